@@ -11,6 +11,7 @@ _SLEEP = re.compile(r"\b(sleep_for|sleep_until|usleep|nanosleep|time\.sleep)\b|\
 # The only tests that sleep, and why.
 SLEEPERS = {
     "test/tools/eventually.hpp": "looks again at a condition",
+    "test/tools/stopped.hpp": "how long a process is stopped",
     "test/mission/supervise/shell_mission.hpp": "looks again at a condition",
     "test/connector/echo_service.cpp": "an operation that takes its time until it is cancelled",
     "test/dds/fastdds/fastdds_forgetting_test.cpp": "the age of what is requested: Fast DDS sends nothing again that it has just sent",

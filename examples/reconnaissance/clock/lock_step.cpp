@@ -4,7 +4,7 @@
 
 namespace reconnaissance {
 
-void LockStep::hear(const Told& told, skein::Instant now) {
+void LockStep::hear(const Told& told) {
   if (told.leaves) {
     const auto found = participants_.find(told.participant);
     if (found != participants_.end() && found->second.life == told.life) participants_.erase(found);
@@ -15,17 +15,16 @@ void LockStep::hear(const Told& told, skein::Instant now) {
   if (is_new || participant.life != told.life)
     participant = {.life = told.life, .period = told.period, .joined = tick_};
   participant.done = std::max(participant.done, told.done);
-  participant.heard = now;
+  participant.looks = 0;
 }
 
-std::vector<std::string> LockStep::keep_connected(std::size_t connected, skein::Instant now,
-                                                  skein::Duration patience) {
+std::vector<std::string> LockStep::keep_connected(std::size_t connected, int patience) {
   std::vector<std::string> out;
+  for (auto& [name, participant] : participants_) ++participant.looks;
   while (participants_.size() > connected) {
-    const auto silent = std::min_element(
-        participants_.begin(), participants_.end(),
-        [](const auto& a, const auto& b) { return a.second.heard < b.second.heard; });
-    if (now - silent->second.heard < patience) break;
+    const auto silent = std::ranges::max_element(
+        participants_, {}, [](const auto& each) { return each.second.looks; });
+    if (silent->second.looks < patience) break;
     out.push_back(silent->first);
     participants_.erase(silent);
   }

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "skein/clock.hpp"
 #include "ticks.hpp"
 
 namespace reconnaissance {
@@ -20,8 +19,8 @@ struct Told {
 };
 
 /// Who takes part in the mission's time, and whether it may advance: when all that are due at the
-/// present tick have acknowledged it. A pure object: what happened goes in, with the time on the
-/// system's clock at which it did; no thread, no network.
+/// present tick have acknowledged it. A pure object: what happened goes in; no clock, no thread, no
+/// network.
 class LockStep {
  public:
   /// Time begins when that many take part.
@@ -29,12 +28,13 @@ class LockStep {
 
   /// A participant has spoken. One that is new, or has started anew, joins at the present tick, and
   /// is due at the next one that its period divides.
-  void hear(const Told& told, skein::Instant now);
+  void hear(const Told& told);
 
-  /// Of the participants only so many are still connected: the others, who have been silent
-  /// longest, are out, if that was for `patience` or more. Returns their names.
-  std::vector<std::string> keep_connected(std::size_t connected, skein::Instant now,
-                                          skein::Duration patience);
+  /// Looks whether anybody is gone. Of the participants only so many are still connected: the
+  /// others, those that have been silent longest, are out, if that was for `patience` looks or
+  /// more. Looks count, not time: a keeper that was stopped has heard nobody, and nobody is gone.
+  /// Returns their names.
+  std::vector<std::string> keep_connected(std::size_t connected, int patience);
 
   /// -1 before the beginning.
   Tick tick() const { return tick_; }
@@ -56,7 +56,7 @@ class LockStep {
     int period = 1;
     Tick joined = -1;
     Tick done = -1;
-    skein::Instant heard{};
+    int looks = 0;  // since it was heard
   };
 
   bool owes(const Participant& participant) const;

@@ -106,7 +106,7 @@ std::optional<ChosenModel::Absence> ChosenModel::try_to_place(const std::string&
     return true;
   };
   try {
-    entity_.head().perform(task, nullptr, kUnlessItHangs);
+    perform(entity_, task);
   } catch (const recon::Refused& refusal) {
     return Absence{refusal.reason, false};
   } catch (const skein::Error& error) {

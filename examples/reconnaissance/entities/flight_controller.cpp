@@ -107,6 +107,7 @@ void FlightController::land(const recon::Route& route, const recon::Runway& to, 
 void FlightController::accept(std::int64_t tick, std::uint32_t route,
                               std::function<std::string()> obey) {
   std::lock_guard lock(mutex_);
+  std::erase_if(orders_, [&](const Order& order) { return order.from == tick + 1; });
   orders_.push_back({tick + 1, std::move(obey), route});
 }
 

@@ -106,7 +106,8 @@ MissionManager::MissionManager(skein::Entity& entity, const skein::ParameterValu
 void MissionManager::start() {
   navigator_ =
       entity_.connect<recon::INavigator>({.timeout = kServicesWithin}).within(kUnlessAllHang);
-  controller_ = entity_.connect<recon::IFlightController>({.timeout = kServicesWithin});
+  controller_ = entity_.connect<recon::IFlightController>({.timeout = kServicesWithin})
+                    .within(kUnlessAllHang);
   limits_ = controller_->limits();
   cruise_.speed_m_s = limits_.speed_m_s;
   cruise_.turn_radius_m = limits_.turn_radius_m;
@@ -181,7 +182,7 @@ MissionManager::Order MissionManager::reconsider(const recon::FlightState& state
                                                  const Conduct::Situation& now) {
   const MissionPhase phase = conduct_->phase();
   if (phase != MissionPhase::Egress) waits_ = false;
-  if (return_home_ && phase != MissionPhase::Egress) return conduct_->give_up(*return_home_);
+  if (return_home_ && phase != MissionPhase::Egress) return conduct_->call_back(*return_home_);
   if (phase == MissionPhase::BuiltInTest) {
     if (const auto cause = contradiction(state, elements))
       return conduct_->give_up("the order contradicts itself: " + *cause);
@@ -192,7 +193,7 @@ MissionManager::Order MissionManager::reconsider(const recon::FlightState& state
                       "no element can be collected within the time, fuel and risk that are allowed")
                 : Order{};
   }
-  if (conduct_->may_try_again())
+  if (conduct_->may_try_again() && !return_home_)
     if (Order order = pursue(state, elements)) return order;
   const bool barred = now.legs > 0 && is_barred(state);
   if (may_look_again(now, state.tick)) {
@@ -480,7 +481,7 @@ recon::Route MissionManager::ask_route(const std::vector<WayPoint>& through, Tic
   const std::uint32_t number = route_.number + 1;
   route_ = navigator_->plan(request);
   // The way home from a tour that was refused was planned with others than that.
-  if (!conduct_->may_try_again()) planned_area_m2_ = area_m2(threats_);
+  if (return_home_ || !conduct_->may_try_again()) planned_area_m2_ = area_m2(threats_);
   route_.number = number;
   through_ = through;
   // What remains of a way that leads around as well as it can bars nothing.

@@ -329,7 +329,7 @@ AE_navigator::Route Navigator::ask_planner(const AE_navigator::Problem& problem,
                          });
   try {
     skein::introspection::Decision decision;
-    const AE_navigator::Route route = entity_.head().perform(task, &decision, kUnlessItHangs);
+    const AE_navigator::Route route = perform(entity_, task, &decision);
     // Whether it is back for the next part of this route is luck, and has no say in it.
     if (failure != failures_.end()) instead_ = accepted(decision);
     return route;

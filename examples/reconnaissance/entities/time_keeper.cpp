@@ -12,11 +12,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// How often one looks whether somebody is gone, and how long that one must have been silent. On a
-// busy machine who is there can be silent for longer than its lease, and must be waited for: to go
-// on without it would be wrong. Who is started anew is not waited for (see LockStep).
+// How often one looks whether somebody is gone.
 constexpr auto kLook = 100ms;
-constexpr auto kSilence = 10s;
 
 std::uint64_t new_run() {
   return static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch().count());
@@ -40,8 +37,9 @@ skein::TopicQos time_qos() {
 }
 
 TimeKeeper::TimeKeeper(skein::Entity& entity, std::size_t expected, double times_real_time,
-                       const std::vector<std::string>& systems)
+                       const std::vector<std::string>& systems, skein::Duration patience)
     : entity_(entity),
+      patience_(static_cast<int>(patience / kLook)),
       run_(new_run()),
       lock_step_(expected),
       pace_(times_real_time),
@@ -108,8 +106,7 @@ void TimeKeeper::drop_the_lost(std::unique_lock<std::mutex>& lock) {
   lock.unlock();
   const std::size_t connected = acknowledgments_.publishers();
   lock.lock();
-  for (const std::string& name :
-       lock_step_.keep_connected(connected, entity_.clock().now(), kSilence)) {
+  for (const std::string& name : lock_step_.keep_connected(connected, patience_)) {
     fmt::print(stderr, "time: {} is lost; the mission's time goes on without it\n", name);
   }
 }
@@ -120,8 +117,7 @@ void TimeKeeper::hear(const recon::Acknowledgment& acknowledgment) {
                    .life = acknowledgment.life,
                    .period = acknowledgment.period_ticks,
                    .done = acknowledgment.tick,
-                   .leaves = acknowledgment.leaves},
-                  entity_.clock().now());
+                   .leaves = acknowledgment.leaves});
 }
 
 Tick TimeKeeper::tick() const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -23,14 +24,18 @@ skein::TopicQos time_qos();
 
 /// Makes the mission's time: publishes a tick when all that were due at the one before have
 /// acknowledged it. There is a topic for each rate, so that who takes part once a second is not
-/// woken fifty times. One that is no longer connected, and has been silent for ten seconds of real
+/// woken fifty times. One that is no longer connected, and has been silent for kPatience of real
 /// time, is out, and time goes on without it. Thread-safe.
 class TimeKeeper {
  public:
+  /// A process that was stopped for a minute comes back, and to go on without it would be wrong;
+  /// less than a ground station waits. One that is started anew is not waited for (see LockStep).
+  static constexpr skein::Duration kPatience = std::chrono::seconds(90);
+
   /// Time begins when `expected` take part; `times_real_time` as for Pace. They are of the systems
   /// that are named, or else of the entity's own.
   TimeKeeper(skein::Entity& entity, std::size_t expected, double times_real_time,
-             const std::vector<std::string>& systems = {});
+             const std::vector<std::string>& systems = {}, skein::Duration patience = kPatience);
 
   /// Waits until the next tick may begin; its number, or nothing if the caller is told to stop.
   std::optional<Tick> await_next(const std::stop_token& stop);
@@ -59,6 +64,7 @@ class TimeKeeper {
   void change(const std::function<void(Pace&)>& change);
 
   skein::Entity& entity_;
+  const int patience_;  // in looks
   std::uint64_t run_;
   std::map<int, skein::Publisher<recon::MissionTime>> time_;  // by period
 

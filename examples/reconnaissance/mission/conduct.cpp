@@ -80,6 +80,11 @@ std::optional<Conduct::Order> Conduct::give_up(const std::string& reason) {
   return std::nullopt;
 }
 
+std::optional<Conduct::Order> Conduct::call_back(const std::string& reason) {
+  sent_home_ = is_under_way();
+  return give_up(reason);
+}
+
 std::optional<Conduct::Order> Conduct::wait(const Circle& circle, const std::string& reason) {
   if (!may_try_again()) return std::nullopt;
   reason_ = reason;

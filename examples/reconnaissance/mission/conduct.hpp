@@ -70,8 +70,7 @@ class Conduct {
       : strip_(strip), rules_(rules) {}
 
   /// What is flown from now on, in place of what was: at once, where that is under way, or where it
-  /// flies home for no other reason than that a route was refused or no tour was left; an empty one
-  /// leads home.
+  /// may try again; an empty one leads home.
   std::optional<Order> fly(std::vector<WayPoint> tour, const std::string& reason);
 
   /// A circle is flown until something else is, in place of what is left of the tour, or of a way
@@ -80,6 +79,9 @@ class Conduct {
 
   /// What is left of the tour is given up, if it is under way; before the take-off all is.
   std::optional<Order> give_up(const std::string& reason);
+
+  /// As give_up(), for as long as the executive wants it: then another tour may be given to it.
+  std::optional<Order> call_back(const std::string& reason);
 
   /// A circle is flown until there is another tour, if it flies home for want of one.
   std::optional<Order> wait(const Circle& circle, const std::string& reason);
@@ -101,7 +103,8 @@ class Conduct {
   std::optional<Order> refused(const std::string& reason);
 
   MissionPhase phase() const { return phase_; }
-  /// It flies home because a route was refused or no tour was left, and may be given another one.
+  /// It flies home because a route was refused, no tour was left or the executive wanted it, and
+  /// may be given another tour.
   bool may_try_again() const { return phase_ == MissionPhase::Egress && sent_home_; }
   const std::string& reason() const { return reason_; }
   std::size_t points_reached() const { return reached_; }
@@ -121,7 +124,7 @@ class Conduct {
   MissionPhase phase_ = MissionPhase::BuiltInTest;
   std::string reason_ = "waits until everybody is fine";
   std::size_t reached_ = 0;
-  bool sent_home_ = false;  // By a refusal, or an empty tour.
+  bool sent_home_ = false;  // By a refusal, an empty tour or the executive.
 };
 
 }  // namespace reconnaissance

@@ -20,11 +20,16 @@ const MissingEntity* find(const MissionSituation& situation, auto&& wanted) {
   return found == situation.missing.end() ? nullptr : &*found;
 }
 
-bool is_final(FlightMode mode) { return mode >= FlightMode::ReturnHome; }
+/// An entity that was lost may come back.
+bool is_final(const ModeDecision& decision) {
+  return decision.mode >= FlightMode::ReturnHome && decision.cause != Cause::EntityLost;
+}
 
-/// Final modes stay.
-ModeDecision continued(const ModeDecision& last, const ModeDecision& next) {
-  return is_final(last.mode) && next.mode <= last.mode ? last : next;
+/// The last final mode stays, until there is a more severe one.
+ModeDecision continued(ModeDecision& last, const ModeDecision& next) {
+  if (next.mode <= last.mode) return last;
+  if (is_final(next)) last = next;
+  return next;
 }
 
 /// That a flight burns more than there is.
@@ -58,8 +63,7 @@ ModeDecision allowed_mode(const MissionSituation& s) {
 }
 
 ModeDecision RuleTableExecutive::decide(const MissionSituation& situation) {
-  last_ = continued(last_, allowed_mode(situation));
-  return last_;
+  return continued(last_, allowed_mode(situation));
 }
 
 double UtilityExecutive::utility_of_mission(const MissionSituation& s) {
@@ -76,12 +80,11 @@ double UtilityExecutive::utility_of_return(const MissionSituation& s) {
 
 ModeDecision UtilityExecutive::decide(const MissionSituation& situation) {
   ModeDecision next = allowed_mode(situation);
-  if (!is_final(next.mode) &&
+  if (next.mode < FlightMode::ReturnHome &&
       utility_of_return(situation) > utility_of_mission(situation) + kAdvantage) {
     next = {FlightMode::ReturnHome, Cause::Forecast, {}};
   }
-  last_ = continued(last_, next);
-  return last_;
+  return continued(last_, next);
 }
 
 }  // namespace reconnaissance

@@ -62,14 +62,15 @@ struct ModeDecision {
 ModeDecision allowed_mode(const MissionSituation& situation);
 
 // The executive's two choices, with the same function. Both remember that Abort and ReturnHome are
-// final: fuel does not come back, and a flight that wavers at the limit is worse than either.
+// final, but for the loss of an entity, which may come back: fuel does not, and a flight that
+// wavers at the limit is worse than either.
 
 class RuleTableExecutive {
  public:
   ModeDecision decide(const MissionSituation& situation);
 
  private:
-  ModeDecision last_;
+  ModeDecision last_;  // final one
 };
 
 /// Chooses, of the modes that the rules allow, the one with the greatest expected utility, in
@@ -85,7 +86,7 @@ class UtilityExecutive {
   static double utility_of_return(const MissionSituation& situation);
 
  private:
-  ModeDecision last_;
+  ModeDecision last_;  // final one
 };
 
 }  // namespace reconnaissance

@@ -100,9 +100,10 @@ struct Member {
 struct Simulator {
   explicit Simulator(
       std::size_t expected, Notes& notes_,
-      std::shared_ptr<skein::dds::Vendor> vendor = skein::dds::load_vendor("loopback"))
+      std::shared_ptr<skein::dds::Vendor> vendor = skein::dds::load_vendor("loopback"),
+      skein::Duration patience = TimeKeeper::kPatience)
       : entity(make_entity("simulator", std::move(vendor))),
-        time(*entity, expected, 0),
+        time(*entity, expected, 0, {}, patience),
         notes(notes_) {
     truth.emplace(entity->publisher<recon::Truth>(kTruthEachTick.name, stream_qos()));
     thread = std::jthread([this](const std::stop_token& stop) {
@@ -251,7 +252,7 @@ TEST_CASE("one that dies without a farewell is out, and time goes on") {
   Notes notes;
   skein::SystemClock clock;
   skein::dds::LoopbackNetwork network(clock);
-  Simulator simulator(2, notes, network.vendor());
+  Simulator simulator(2, notes, network.vendor(), 100ms);
   Member controller(
       "controller", 50, [&](Tick tick) { notes.note("controller", tick); }, network.vendor());
   Member navigator(

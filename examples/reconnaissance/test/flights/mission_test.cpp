@@ -6,7 +6,9 @@
 #include <sstream>
 
 #include "mission_report.hpp"
+#include "test/tools/command_run.hpp"
 #include "test/tools/places.hpp"
+#include "test/tools/stopped.hpp"
 #include "track_check.hpp"
 
 using namespace skein::test;
@@ -58,6 +60,17 @@ std::set<std::string> told_faults(const nlohmann::json& report) {
   for (const auto& each : report["faults"])
     told.insert(each["noticed_by"].get<std::string>() + ": " + each["what"].get<std::string>());
   return told;
+}
+
+/// Of a running mission.
+pid_t process_of(const std::string& peer) {
+  CommandRun status({"status", "--json", kMission});
+  REQUIRE(status.wait() == 0);
+  const auto told = nlohmann::json::parse(status.output());
+  for (const auto& each : told["processes"])
+    if (each["name"] == peer) return each["pid"].get<pid_t>();
+  FAIL("there is no process " << peer);
+  return 0;
 }
 
 /// The angle of a pixel of the camera: 3 degrees by 1440 rows.
@@ -136,6 +149,18 @@ TEST_CASE("a profile that is wrong is refused, and nothing flies") {
   const MissionRun run(kMission, with(kShort, {"--variable", "vendor_b=nobody"}));
   CHECK(run.exit_code() == 78);
   CHECK_FALSE(exists(run.file("reconnaissance.json")));
+}
+
+TEST_CASE("a mission one of whose processes is stopped for 30 s in the tour goes on, and passes",
+          "[.stopped]") {
+  const std::string peer = GENERATE("navigator", "flight_simulator", "mission_manager");
+  CAPTURE(peer);
+  CommandRun run({"launch", kMission});
+  REQUIRE(run.writes("Ingress: planned"));
+  stop_process(process_of(peer), std::chrono::seconds(30));
+  CHECK(run.wait(std::chrono::minutes(5)) == 0);
+  INFO(run.output());
+  CHECK_THAT(run.output(), Contains("3 of 3 elements collected"));
 }
 
 TEST_CASE(

@@ -188,6 +188,21 @@ TEST_CASE("a mission that a refused route has sent home goes on when another tou
   CHECK_FALSE(conduct.may_try_again());
 }
 
+TEST_CASE("a mission that its executive has called back may go on, but not from the ground") {
+  Conduct conduct(kStrip);
+  conduct.fly(kTour, "planned");
+  conduct.decide({.all_fine = true});
+  CHECK_FALSE(conduct.call_back("the navigator is lost"));
+  CHECK(conduct.phase() == MissionPhase::TakeOff);
+  conduct.decide({true, Pilot::Mode::TakingOff, 340});
+  REQUIRE(conduct.call_back("the navigator is lost"));
+  CHECK(conduct.phase() == MissionPhase::Egress);
+  CHECK(conduct.reason() == "the navigator is lost");
+  CHECK(conduct.may_try_again());
+  CHECK(conduct.fly(kTour, "the navigator is back"));
+  CHECK(conduct.phase() == MissionPhase::Ingress);
+}
+
 TEST_CASE("a mission that was sent home waits for another tour, until there is no time for it") {
   Conduct conduct(kStrip);
   const Circle circle{{0, 0, 900}, 2500, true};

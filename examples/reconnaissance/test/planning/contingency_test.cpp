@@ -108,6 +108,22 @@ TEST_CASE("who flies home or aborts does not go back to the mission, but may bec
   both(healthy(), FlightMode::Abort, Cause::NavigationLost);
 }
 
+TEST_CASE(
+    "an abort for an entity that was lost is over when it is back, one for want of fuel is not") {
+  const auto lost = [](MissionSituation& s) { s.missing = {{"navigator", true, true}}; };
+  RuleTableExecutive rules;
+  UtilityExecutive utility;
+  const auto both = [&](const MissionSituation& situation, FlightMode mode) {
+    CHECK(rules.decide(situation).mode == mode);
+    CHECK(utility.decide(situation).mode == mode);
+  };
+  both(with(lost), FlightMode::Abort);
+  both(healthy(), FlightMode::Mission);
+  both(with([](auto& s) { s.fuel_kg = 5; }), FlightMode::ReturnHome);
+  both(with(lost), FlightMode::Abort);
+  both(healthy(), FlightMode::ReturnHome);
+}
+
 TEST_CASE("an entity that restarts degrades the mission until it is back") {
   RuleTableExecutive rules;
   const MissionSituation missing = with([](auto& s) { s.missing = {{"navigator", true, false}}; });
