@@ -23,14 +23,17 @@ void check_name(const std::string& what, const std::string& name) {
 
 using GivesUp = std::function<bool()>;
 
+// What goes wrong while a provider is asked, or in what it says, leaves the error as it is.
 std::string asked_difference(const Broker& broker, const InterfaceInfo& client,
                              const ServiceDescription& provider, Instant deadline,
-                             const GivesUp& gives_up) {
+                             const GivesUp& gives_up) try {
   const auto participant = broker.participant_of({provider.provider});
   const auto& tell_types = broker.options().tell_types;
   const auto told =
       participant && tell_types ? tell_types(provider, *participant, deadline, gives_up) : nullptr;
   return told ? difference(client, provider, *told) : difference(client, provider);
+} catch (const std::exception&) {
+  return difference(client, provider);
 }
 
 /// Asks one provider for each difference that shows without its types.

@@ -548,6 +548,10 @@ TEST_CASE("a provider of another version is asked for its types before a wait en
     CHECK(asked == 1);
     CHECK_FALSE(gave_up);
   }
+  SECTION("nor does what goes wrong meanwhile take its place") {
+    meanwhile = [] { throw Internal("no endpoint"); };
+    CHECK_THROWS_WITH(await(), Catch::Contains("operation 'plan' has another signature there ("));
+  }
   SECTION("those of one version are asked once") {
     const auto same = provide(2, 1001);
     CHECK_THROWS_AS(await(), Unavailable);

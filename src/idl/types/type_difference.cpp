@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <set>
+#include <stdexcept>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -365,7 +366,7 @@ std::string in_words(const TypeDifference& difference, const std::string& here,
 }
 
 Found difference_of_interfaces(const std::string& name, const TypeSystem& here,
-                               const TypeSystem& there) {
+                               const TypeSystem& there) try {
   const auto offered = operations_of(there, name);
   if (offered.empty()) return std::nullopt;
   Comparison comparison(here, there);
@@ -379,15 +380,19 @@ Found difference_of_interfaces(const std::string& name, const TypeSystem& here,
     }
   }
   return std::nullopt;
+} catch (const std::out_of_range&) {  // a description lacks what its kind has
+  return std::nullopt;
 }
 
-Found difference_of_types(const TypeSystem& here, const TypeSystem& there) {
+Found difference_of_types(const TypeSystem& here, const TypeSystem& there) try {
   Comparison comparison(here, there);
   for (const Declaration& mine : here.declarations) {
     const Declaration* const other = find_declaration(there, mine.name);
     if (!other) continue;
     if (auto found = comparison.declaration({mine.name, mine.name}, mine, *other)) return found;
   }
+  return std::nullopt;
+} catch (const std::out_of_range&) {  // likewise
   return std::nullopt;
 }
 
