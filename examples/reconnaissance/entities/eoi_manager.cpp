@@ -28,14 +28,6 @@ constexpr double kDrivenOn_m = 2500;
 // A search is over when no image has been taken for so long.
 constexpr double kSearchOver_s = 5;
 
-recon::ElementTask task_of(const std::string& text) {
-  if (text == "images") return recon::ElementTask::TakeImages;
-  if (text == "follow") return recon::ElementTask::FollowTarget;
-  if (text == "locate") return recon::ElementTask::LocateEmitter;
-  throw skein::InvalidArgument("parameter 'Task': '" + text +
-                               "' is no task; there are images, follow and locate");
-}
-
 /// All that are ordered, or the share of this aircraft where there are others.
 std::vector<ElementText> elements_of(const skein::Entity& entity,
                                      const skein::ParameterValues& values) {
@@ -66,6 +58,13 @@ double greatest_deviation_m(const GroundEstimate& estimate) {
 }
 
 }  // namespace
+
+recon::ElementTask task_of(const std::string& text) {
+  if (text == "images") return recon::ElementTask::TakeImages;
+  if (text == "follow") return recon::ElementTask::FollowTarget;
+  if (text == "locate") return recon::ElementTask::LocateEmitter;
+  throw skein::InvalidArgument("'" + text + "' is no task; there are images, follow and locate");
+}
 
 EoiManager::EoiManager(skein::Entity& entity, const skein::ParameterValues& values)
     : entity_(entity),

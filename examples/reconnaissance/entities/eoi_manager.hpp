@@ -16,6 +16,10 @@
 
 namespace reconnaissance {
 
+/// What a profile wants of all elements: `images`, `follow` or `locate`. Throws
+/// skein::InvalidArgument for another word.
+recon::ElementTask task_of(const std::string& text);
+
 /// Knows the elements of interest, and how well each has been seen. Its CSPs are policies which one
 /// is next; its Head takes the best. Where the order is to follow targets or to place emitters, it
 /// takes them from tracks and from the threat picture instead of images.

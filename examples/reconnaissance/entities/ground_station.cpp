@@ -136,6 +136,11 @@ std::string GroundStation::why_time_stands() {
     const auto status = simulator_->status();
     if (status.paused) return "";
     for (const std::string& name : status.awaited) reason += "; time waits for " + name;
+    if (status.tick < 0)
+      reason += fmt::format(
+          "; time has not begun, since {} take part in it: how many must is the parameter "
+          "'Participants'",
+          status.participants);
   } catch (const skein::Error& error) {
     reason += fmt::format("; the flight simulator: {}", error.what());
   }
@@ -209,10 +214,10 @@ void GroundStation::see(const recon::MissionStatus& status) {
 void GroundStation::see(const recon::MissionMode& mode) {
   {
     std::lock_guard lock(mutex_);
+    why_limited_ = mode.reason.empty() ? mode.cause : mode.reason;
     if (mode_ == mode.mode && flight_order_ == mode.flight) return;
     mode_ = mode.mode;
     flight_order_ = mode.flight;
-    why_limited_ = mode.reason.empty() ? mode.cause : mode.reason;
   }
   fmt::print("{}  mode {}, {}{}{}\n", clock_of(mode.tick), to_string(mode.mode),
              to_string(mode.flight), mode.cause.empty() ? "" : ": " + mode.cause,

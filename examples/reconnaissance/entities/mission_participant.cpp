@@ -18,19 +18,19 @@ using namespace std::chrono_literals;
 // the time's keeper may not have heard before the two had met.
 constexpr auto kTellAgain = 250ms;
 
-int period_of(int rate_hz) {
+std::uint64_t new_life() {
+  return static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch().count());
+}
+
+}  // namespace
+
+int period_of(std::int64_t rate_hz) {
   constexpr int kTicksPerSecond = 50;
   for (const int period : kPeriods)
     if (rate_hz * period == kTicksPerSecond) return period;
   throw skein::InvalidArgument(fmt::format(
       "nobody can take part {} times a second; 1, 2, 5, 10, 25 and 50 are possible", rate_hz));
 }
-
-std::uint64_t new_life() {
-  return static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch().count());
-}
-
-}  // namespace
 
 Participant::Participant(skein::Entity& entity, int rate_hz, Work work)
     : entity_(entity),

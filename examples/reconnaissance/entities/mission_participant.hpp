@@ -17,6 +17,10 @@ namespace reconnaissance {
 
 class SteppedTime;
 
+/// In how many ticks one who takes part so many times a second has one; throws InvalidArgument
+/// unless that is 1, 2, 5, 10, 25 or 50.
+int period_of(std::int64_t rate_hz);
+
 /// Takes part in the mission's time: does its work in each tick at which it is due, on a thread of
 /// its own, and acknowledges the tick when the work is done. Whatever the work has published and
 /// called by then has happened in that tick. If the entity's clock is a SteppedTime, the work is
@@ -25,8 +29,8 @@ class Participant {
  public:
   using Work = std::function<void(Tick)>;
 
-  /// Takes part `rate_hz` times a second of the mission, under the entity's name; throws
-  /// InvalidArgument unless that is 1, 2, 5, 10, 25 or 50. The work begins after start().
+  /// Takes part `rate_hz` times a second of the mission, under the entity's name; throws as
+  /// period_of() does. The work begins after start().
   Participant(skein::Entity& entity, int rate_hz, Work work);
   /// Leaves: time goes on without it.
   ~Participant();

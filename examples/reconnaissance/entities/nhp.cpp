@@ -11,6 +11,7 @@
 #include "deciding.hpp"
 #include "flight/aircraft_type.hpp"
 #include "mission/places.hpp"
+#include "skein/error.hpp"
 #include "topics.hpp"
 
 namespace reconnaissance {
@@ -30,12 +31,24 @@ double fuel_kg_m(const AircraftType& type) {
   return type.fuel_kg_s / type.rules.cruise_m_s * kTurnsAndWind;
 }
 
+/// Throws where a name is not of the crew: nobody would hear of it.
+std::vector<std::string> required_of(const skein::ParameterValues& values,
+                                     const std::vector<std::string>& crew) {
+  auto required = parse_names(values.find<std::string>("Required").value_or(""));
+  for (const std::string& name : required) {
+    if (std::ranges::count(crew, name) > 0) continue;
+    throw skein::InvalidArgument(fmt::format(
+        "parameter 'Required': '{}' is not of the crew, which is {}", name, fmt::join(crew, ", ")));
+  }
+  return required;
+}
+
 }  // namespace
 
 Nhp::Nhp(skein::Entity& entity, const skein::ParameterValues& values)
     : entity_(entity),
       crew_(parse_names(values.get<std::string>("Crew"))),
-      required_(parse_names(values.find<std::string>("Required").value_or(""))),
+      required_(required_of(values, crew_)),
       fuel_reserve_kg_(values.find<double>("Fuel reserve").value_or(20)),
       fuel_kg_m_(
           fuel_kg_m(aircraft_type(values.find<std::string>("Aircraft type").value_or("medium")))),

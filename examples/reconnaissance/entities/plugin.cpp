@@ -11,6 +11,8 @@
 #include "flight_controller.hpp"
 #include "flight_models.hpp"
 #include "flight_simulator.hpp"
+#include "mission/elements.hpp"
+#include "mission/places.hpp"
 #include "mission_manager.hpp"
 #include "mission_navigator.hpp"
 #include "nhp.hpp"
@@ -19,9 +21,11 @@
 #include "radar_warner.hpp"
 #include "skein/component_registry.hpp"
 #include "skein/entity.hpp"
+#include "skein/error.hpp"
 #include "station.hpp"
 #include "target_csps.hpp"
 #include "threat_simulator.hpp"
+#include "threats/sites.hpp"
 #include "tour_csps.hpp"
 
 using skein::ComponentRegistry;
@@ -44,13 +48,13 @@ void add_body(ComponentRegistry& registry, const char* name) {
 /// One that offers none.
 template <class Own>
 void add_activity(ComponentRegistry& registry, const char* name) {
-  registry.add_activity(
-      name, [](Entity& entity, const ParameterValues& values, const std::stop_token& told_to_end) {
-        Own own(entity, values);
-        own.start();
-        skein::await_end(entity, told_to_end);
-        return 0;
-      });
+  registry.add_activity(name, [](Entity& entity, const ParameterValues& values) {
+    return [own = std::make_shared<Own>(entity, values), &entity](const std::stop_token& told) {
+      own->start();
+      skein::await_end(entity, told);
+      return 0;
+    };
+  });
 }
 
 template <class Interface, class Csp, class... Arguments>
@@ -118,10 +122,36 @@ void add_all(ComponentRegistry& registry) {
   add_csp<recon::IEmitterLocator, EmitterLocator>(registry, "BearingFilter", &by_filter);
   add_csp<recon::IEmitterLocator, EmitterLocator>(registry, "Triangulation", &by_triangulation);
 
-  registry.add_activity("GroundStation", [](Entity& entity, const ParameterValues& values,
-                                            const std::stop_token& told_to_end) {
-    return Station(entity, values).run(told_to_end);
+  registry.add_activity("GroundStation", [](Entity& entity, const ParameterValues& values) {
+    return [station = std::make_shared<Station>(entity, values)](const std::stop_token& told) {
+      return station->run(told);
+    };
   });
+}
+
+void check_sites(const std::string& text) {
+  for (const SiteText& each : parse_sites(text))
+    site_of_type(each.type, 0, Local{}, each.active_from_s);
+}
+
+void check_elements(const std::string& text) {
+  if (parse_elements(text).empty()) throw skein::InvalidArgument("it names no element");
+}
+
+/// So that a wrong value is told before anything starts.
+void add_checks(ComponentRegistry& registry) {
+  registry.add_check<std::string>("Runway", parse_runway);
+  registry.add_check<std::string>("Own runway", parse_runway);
+  registry.add_check<std::string>("Runways", parse_runways);
+  registry.add_check<std::string>("Sites", check_sites);
+  registry.add_check<std::string>("Elements", check_elements);
+  registry.add_check<std::string>("Objects", parse_objects);
+  registry.add_check<std::string>("Intruders", parse_intruders);
+  registry.add_check<std::string>("Sensor failures", parse_failures);
+  registry.add_check<std::string>("Planner failures", parse_planner_failures);
+  registry.add_check<std::string>("Task", task_of);
+  registry.add_check<std::string>("Aircraft type", aircraft_type);
+  registry.add_check<std::int64_t>("Rate", period_of);
 }
 
 }  // namespace
@@ -131,4 +161,5 @@ extern "C" std::uint32_t skein_plugin_abi() { return SKEIN_ABI; }
 
 extern "C" void skein_register_components(ComponentRegistry& registry) {
   reconnaissance::add_all(registry);
+  reconnaissance::add_checks(registry);
 }

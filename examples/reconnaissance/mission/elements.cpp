@@ -23,10 +23,19 @@ constexpr const char* kObject =
 
 std::vector<double> numbers_of(std::istringstream& words, const std::string& part,
                                const char* what) {
-  std::vector<double> numbers;
-  for (double number = 0; words >> number;) numbers.push_back(number);
-  if (!words.eof()) refuse(part, what);
-  return numbers;
+  if (const auto numbers = remaining_numbers(words)) return *numbers;
+  refuse(part, what);
+}
+
+/// Refuses a latitude or longitude that the Earth does not have.
+Geodetic place_of(double latitude, double longitude, const std::string& part, const char* what) {
+  if (std::abs(latitude) > 90 || std::abs(longitude) > 180) refuse(part, what);
+  return {latitude, longitude, 0};
+}
+
+void refuse_second(const std::vector<ElementText>& elements, const std::string& name) {
+  if (std::ranges::find(elements, name, &ElementText::name) == elements.end()) return;
+  throw skein::InvalidArgument("two elements are called '" + name + "'");
 }
 
 // Further aside an element is too coarse in images from the heights that are flown.
@@ -53,10 +62,9 @@ std::vector<ElementText> parse_elements(const std::string& text) {
     element.size_m = numbers[1];
     element.wanted_sample_m = numbers[2];
     element.margin_m = numbers[3];
-    for (std::size_t i = 4; i < numbers.size(); i += 2) {
-      if (std::abs(numbers[i]) > 90 || std::abs(numbers[i + 1]) > 180) refuse(part, kElement);
-      element.line.push_back({numbers[i], numbers[i + 1], 0});
-    }
+    for (std::size_t i = 4; i < numbers.size(); i += 2)
+      element.line.push_back(place_of(numbers[i], numbers[i + 1], part, kElement));
+    refuse_second(elements, element.name);
     elements.push_back(std::move(element));
   }
   return elements;
@@ -69,8 +77,9 @@ std::vector<ObjectText> parse_objects(const std::string& text) {
     const auto numbers = numbers_of(words, part, kObject);
     if (numbers.size() < 5 || (numbers.size() - 5) % 3 != 0 || numbers[2] <= 0)
       refuse(part, kObject);
-    ObjectText object{
-        {numbers[0], numbers[1], 0}, numbers[2], {{0, radians(numbers[3]), numbers[4]}}};
+    ObjectText object{place_of(numbers[0], numbers[1], part, kObject),
+                      numbers[2],
+                      {{0, radians(numbers[3]), numbers[4]}}};
     for (std::size_t i = 5; i < numbers.size(); i += 3) {
       if (numbers[i] <= object.legs.back().from_s) refuse(part, kObject);
       object.legs.push_back({numbers[i], radians(numbers[i + 1]), numbers[i + 2]});

@@ -1,6 +1,7 @@
 #include "places.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <sstream>
 
@@ -10,13 +11,12 @@
 namespace reconnaissance {
 namespace {
 
-/// So many numbers, or so many more.
+/// So many numbers, or so many more, from there on.
 std::vector<double> numbers_in(const std::string& text, std::size_t count, const char* what,
-                               std::size_t more = 0) {
-  std::istringstream words(text);
-  std::vector<double> numbers;
-  for (double number = 0; words >> number;) numbers.push_back(number);
-  if (words.eof() && numbers.size() >= count && numbers.size() <= count + more) return numbers;
+                               std::size_t more = 0, std::size_t from = 0) {
+  std::istringstream words(text.substr(from));
+  const auto numbers = remaining_numbers(words);
+  if (numbers && numbers->size() >= count && numbers->size() <= count + more) return *numbers;
   throw skein::InvalidArgument("'" + text + "' is no " + what);
 }
 
@@ -31,14 +31,30 @@ Geodetic read_place(const std::vector<double>& numbers, const std::string& text)
 }  // namespace
 
 std::vector<std::string> parts_of(const std::string& text, char separator) {
+  constexpr const char* kBlank = " \t\r\n";
+  const char separators[] = {separator, '\n', '\0'};
   std::vector<std::string> parts;
-  std::istringstream list(text);
-  for (std::string part; std::getline(list, part, separator);) {
-    const auto begin = part.find_first_not_of(" \t\n");
-    if (begin == std::string::npos) continue;
-    parts.push_back(part.substr(begin, part.find_last_not_of(" \t\n") + 1 - begin));
+  for (std::size_t at = 0, end = 0; at < text.size(); at = end + 1) {
+    end = std::min(text.find_first_of(separators, at), text.size());
+    const auto begin = text.find_first_not_of(kBlank, at);
+    if (begin >= end) continue;
+    parts.push_back(text.substr(begin, text.find_last_not_of(kBlank, end - 1) + 1 - begin));
   }
   return parts;
+}
+
+std::optional<std::vector<double>> remaining_numbers(std::istream& words) {
+  constexpr double kFurthest = 1e7;
+  std::vector<double> numbers;
+  for (std::string word; words >> word;) {
+    double number = 0;
+    const char* const end = word.data() + word.size();
+    const auto [stop, error] = std::from_chars(word.data(), end, number);
+    if (error != std::errc() || stop != end || !(std::abs(number) <= kFurthest))
+      return std::nullopt;
+    numbers.push_back(number);
+  }
+  return numbers;
 }
 
 RunwayText parse_runway(const std::string& text) {
@@ -63,11 +79,10 @@ std::vector<SiteText> parse_sites(const std::string& text) {
       if (word.find_first_not_of("-.0123456789") == std::string::npos) break;
       split = part.find(word, split) + word.size();
     }
-    const auto numbers = numbers_in(part.substr(split), 3,
+    const auto numbers = numbers_in(part, 3,
                                     "site; write `type latitude longitude active`, and behind it "
-                                    "how near one that lies in wait "
-                                    "lets the aircraft come",
-                                    1);
+                                    "how near one that lies in wait lets the aircraft come",
+                                    1, split);
     SiteText& site = sites.emplace_back();
     site = {part.substr(0, split), read_place({numbers[0], numbers[1], 0}, part), numbers[2]};
     if (numbers.size() == 3) continue;
@@ -97,8 +112,9 @@ std::vector<FailureText> parse_failures(const std::string& text) {
     FailureText failure;
     std::istringstream words(part);
     std::string kind;
-    const bool read(words >> failure.set >> kind >> failure.from_s >> failure.until_s);
-    const bool whole = read && (words >> std::ws).eof() && failure.from_s < failure.until_s;
+    words >> failure.set >> kind;
+    const auto times = remaining_numbers(words);
+    const bool whole = times && times->size() == 2 && times->front() < times->back();
     const auto found = std::find(kKinds.begin() + 1, kKinds.end(), kind);
     if (!whole || found == kKinds.end() || failure.set < 1 || failure.set > 3)
       throw skein::InvalidArgument(
@@ -107,6 +123,8 @@ std::vector<FailureText> parse_failures(const std::string& text) {
           "off, stuck, garbage, wrong, slow, delayed or intermittent; several are separated by "
           "semicolons");
     --failure.set;
+    failure.from_s = times->front();
+    failure.until_s = times->back();
     failure.kind = static_cast<SensorFailure>(found - kKinds.begin());
     failures.push_back(failure);
   }

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <iosfwd>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,8 +13,13 @@
 
 namespace reconnaissance {
 
-/// What stands between separators, without the blanks around it; nothing of what is blank.
+/// What stands between separators or on lines of its own, without the blanks around it; nothing of
+/// what is blank.
 std::vector<std::string> parts_of(const std::string& text, char separator);
+
+/// The numbers that are left; nothing if a word is no number, or is further from 0 than ten
+/// million, which are more metres and seconds than any mission has.
+std::optional<std::vector<double>> remaining_numbers(std::istream& words);
 
 /// A runway as a profile names it: `latitude longitude height course length`, in degrees and
 /// metres. Throws skein::InvalidArgument with what is wrong.

@@ -33,6 +33,33 @@ TEST_CASE("elements and objects are what a profile names") {
   CHECK_THROWS_AS(parse_objects("53.4 27.6 3 90 2.5 100 0 5 100 0 6"), skein::InvalidArgument);
 }
 
+TEST_CASE("what no element or object can be is refused, and told by its own text") {
+  for (const std::string wrong :
+       {"depot -3 5 0.3 30 53.4 27.6", "depot 3 5 0.3 -30 53.4 27.6", "depot 3 5 nan 30 53.4 27.6",
+        "depot inf 5 0.3 30 53.4 27.6", "depot 3 1e300 0.3 30 53.4 27.6",
+        "depot 3 5 0.3 30 53.4 27.6 1e999", "depot 3 5 0.3 30 53.4 27,6", "depot"}) {
+    CAPTURE(wrong);
+    CHECK_THROWS_WITH(parse_elements("road 2 3 0.3 30 53.4 27.7; " + wrong),
+                      Catch::StartsWith("'" + wrong + "' is no element; write `name priority"));
+  }
+  CHECK_THROWS_WITH(parse_elements("depot 3 5 0.3 30 53.4 27.6; depot 1 5 0.3 30 53.5 27.6"),
+                    "two elements are called 'depot'");
+  for (const std::string wrong : {"95 27.6 3 0 0", "53.4 270 3 0 0", "53.4 27.6 3 nan 0",
+                                  "53.4 27.6 3 0 0 10 0 1e999", "53.4 27.6 -3 0 0"}) {
+    CAPTURE(wrong);
+    CHECK_THROWS_WITH(parse_objects(wrong), Catch::StartsWith("'" + wrong + "' is no object"));
+  }
+}
+
+TEST_CASE("each line of a list is a part of it, as is what stands between semicolons") {
+  const auto elements = parse_elements(
+      "depot 3 5 0.3 30 53.4 27.6\r\n\n  road 2 3 0.25 40 53.40 27.71 53.38 27.73;\n"
+      "bridge 2 4 0.3 20 53.34 27.64; dam 2 5 0.3 30 53.33 27.52\n");
+  REQUIRE(elements.size() == 4);
+  CHECK(elements[1].name == "road");
+  CHECK(elements[3].name == "dam");
+}
+
 TEST_CASE("an object drives, stops and turns when the profile says so") {
   const auto legs = parse_objects("53.4 27.6 3 90 2.5 100 90 0 160 0 5")[0].legs;
   const auto at = [&](double now_s) { return moved({10, 20, 0}, legs, now_s); };

@@ -327,6 +327,8 @@ TEST_CASE("places are read from a profile, and what is no place is refused") {
   CHECK_THROWS_AS(parse_sites("mobile gun 53.4 27.5 0 0"), skein::InvalidArgument);
   CHECK_THROWS_AS(parse_sites("mobile gun 53.4 27.5 0 9000 1"), skein::InvalidArgument);
   CHECK_THROWS_AS(parse_sites("coast radar 53.5 27.7"), skein::InvalidArgument);
+  CHECK_THROWS_AS(parse_sites("coast radar 53.5 27.7 0 1e999"), skein::InvalidArgument);
+  CHECK_THROWS_AS(parse_sites("coast radar 53.5 27.7 never"), skein::InvalidArgument);
   const auto intruders = parse_intruders("300 90 9000 70");
   REQUIRE(intruders.size() == 1);
   CHECK(intruders[0].direction_rad == Approx(radians(90)));
@@ -349,6 +351,7 @@ TEST_CASE("places are read from a profile, and what is no place is refused") {
   CHECK_THROWS_AS(parse_failures("2 lazy 200 400"), skein::InvalidArgument);
   CHECK_THROWS_AS(parse_failures("2 wrong 200 400, 1 off 500 600"), skein::InvalidArgument);
   CHECK_THROWS_AS(parse_failures("2 wrong 400 200"), skein::InvalidArgument);
+  CHECK_THROWS_AS(parse_failures("2 wrong 400 1e999"), skein::InvalidArgument);
   CHECK(parse_names("a, b ,c") == std::vector<std::string>{"a", "b", "c"});
   CHECK_THROWS_AS(parse_runway("53.3 27.6 180 90"), skein::InvalidArgument);
   CHECK_THROWS_AS(parse_sites("coast radar 93.5 27.7 0"), skein::InvalidArgument);
