@@ -199,6 +199,10 @@ TEST_CASE("null and empty text refer to no service") {
   CHECK_THROWS_AS(from_json<skein::ServiceReference>("\"uav\""), skein::InvalidArgument);
 }
 
+TEST_CASE("JSON keeps the sign of a zero for readers that take -0 for an integer") {
+  CHECK_THAT(to_json(test_planner::Route{.length_m = -0.0}), Catch::Contains(":-0.0"));
+}
+
 TEST_CASE("JSON that does not fit is refused with the place") {
   const auto refusal = [](const std::string& json) {
     return error_of<skein::InvalidArgument>([&] { from_json<test_planner::Route>(json); });

@@ -190,7 +190,8 @@ Symptom firewall(const Purpose& purpose, const Facts& facts) {
   constexpr const char* kAbout = "firewall";
   if (!facts.firewall) {
     return {Severity::Note, kAbout, "the firewall's rules cannot be read",
-            "nft list ruleset needs root, and the package nftables", "sudo skein doctor"};
+            "nft list ruleset needs root, and the package nftables",
+            "install nftables, then run `sudo skein doctor`"};
   }
   std::istringstream lines(*facts.firewall);
   for (std::string line; std::getline(lines, line);) {

@@ -17,7 +17,8 @@ void add_record(CLI::App& app, int& result) {
       "Record a mission while it flies\n\n"
       "Topics, calls with their arguments and results, and decisions go into a file in the MCAP "
       "format, which Lichtblick and Foxglove open. After a crash, what was written until a second "
-      "before can be read.",
+      "before can be read. A call that never ran, or at which its provider died, has no arguments "
+      "there, as the provider tells them when it ends.",
       {{"skein record --domain 42", "All of a mission, until Ctrl-C"},
        {"skein record --domain 42 --topics pose,track --only-topics --for 60", "Two topics alone"},
        {"skein record --profile mission.xml --output flight.mcap --split 500",
@@ -84,9 +85,10 @@ void add_export(CLI::App& app, int& result) {
   auto& command = add_command(
       app, "export",
       "Write a recording for other programs\n\n"
-      "Tables have a row for each value: the time in seconds since 1970, then a column for each "
-      "member, as PlotJuggler, pandas and spreadsheets read them. An array of more than 16 "
-      "elements is one column of JSON.",
+      "Tables have a row for each value: its time in seconds since 1970 (`recorded_time` where a "
+      "member is called `time`), then a column for each member that a value has, as PlotJuggler, "
+      "pandas and spreadsheets read them. An array of more than 16 elements is one column of "
+      "JSON.",
       {{"skein export flight.mcap --csv tables", "A table for each topic: tables/pose.csv, ..."},
        {"skein export flight.mcap --lines values.jsonl --topics pose,track",
         "JSON, a value a line"},

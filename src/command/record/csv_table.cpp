@@ -75,7 +75,7 @@ void CsvTable::end() {
 }
 
 void CsvTable::write_head(std::ostream& output) const {
-  output << "time";
+  output << (known_.contains("time") ? "recorded_time" : "time");
   for (const std::string& name : columns_) output << ',' << quoted_cell(name);
   output << "\r\n";
 }

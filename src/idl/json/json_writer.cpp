@@ -85,6 +85,8 @@ void JsonWriter::write(T value) {
     if constexpr (std::is_floating_point_v<T>) {
       if (std::isnan(value)) return write_name("NaN");
       if (std::isinf(value)) return write_name(value > 0 ? "Infinity" : "-Infinity");
+      // "-0" is an integer to most readers, which has no sign.
+      if (value == 0 && std::signbit(value)) return write_raw("-0.0");
     }
     separate();
     std::array<char, 32> digits;

@@ -29,6 +29,10 @@ TEST_CASE("a table has a column for each member of any value") {
       "0.000000001,2,,,,3\r\n");
 }
 
+TEST_CASE("a member called time does not share its column's name with the time of the value") {
+  CHECK(table_of({R"({"time": 7})"}) == "recorded_time,time\r\n0.000000000,7\r\n");
+}
+
 TEST_CASE("a table quotes texts that would break it") {
   CHECK(table_of({R"({"a": "x, \"y\"\nz", "b,": "plain"})"}) ==
         "time,a,\"b,\"\r\n0.000000000,\"x, \"\"y\"\"\nz\",plain\r\n");
