@@ -13,6 +13,8 @@ namespace {
 constexpr double kBearingGate = 0.9999;
 constexpr double kLinkGate = 0.99;
 constexpr double kForgetting_s = 10;
+// From nearer places bearings are alike.
+constexpr double kLeastApart_m = 100;
 // A place that moves less is the same to others.
 constexpr double kLeastMove_m = 100;
 // Of the track of an emitter whose power is unknown.
@@ -28,25 +30,31 @@ Interval possible_distances_m(const Intercept& intercept, const std::string& emi
   return kAnywhere_m;
 }
 
-/// The first stays: what is known of its distance holds for its place.
+Bearing joined_bearing(const Bearing& a, const Bearing& b) {
+  const double a_weight = 1 / (a.sigma_rad * a.sigma_rad);
+  const double b_weight = 1 / (b.sigma_rad * b.sigma_rad);
+  const double share = b_weight / (a_weight + b_weight);
+  const double difference = std::remainder(b.bearing_rad - a.bearing_rad, 2 * std::numbers::pi);
+  return {{std::lerp(a.from.north_m, b.from.north_m, share),
+           std::lerp(a.from.east_m, b.from.east_m, share),
+           std::lerp(a.from.height_m, b.from.height_m, share)},
+          a.bearing_rad + share * difference,
+          1 / std::sqrt(a_weight + b_weight)};
+}
+
+/// The first stays: what is known of its distance holds for its place. Those that are far apart
+/// stay as long as others do: the mean of their bearings is not that from their middle.
 void join_neighbours(std::vector<Bearing>& bearings) {
-  std::vector<Bearing> joined{bearings.front()};
-  std::size_t i = 1;
-  for (; i + 1 < bearings.size(); i += 2) {
-    const Bearing& a = bearings[i];
-    const Bearing& b = bearings[i + 1];
-    const double a_weight = 1 / (a.sigma_rad * a.sigma_rad);
-    const double b_weight = 1 / (b.sigma_rad * b.sigma_rad);
-    const double share = b_weight / (a_weight + b_weight);
-    const double difference = std::remainder(b.bearing_rad - a.bearing_rad, 2 * std::numbers::pi);
-    joined.push_back({{std::lerp(a.from.north_m, b.from.north_m, share),
-                       std::lerp(a.from.east_m, b.from.east_m, share),
-                       std::lerp(a.from.height_m, b.from.height_m, share)},
-                      a.bearing_rad + share * difference,
-                      1 / std::sqrt(a_weight + b_weight)});
+  for (double apart_m = kLeastApart_m; bearings.size() >= kGreatestBearings; apart_m *= 2) {
+    std::vector<Bearing> kept{bearings.front()};
+    for (std::size_t i = 1; i < bearings.size(); ++i) {
+      const bool pair = i + 1 < bearings.size() &&
+                        map_distance_m(bearings[i].from, bearings[i + 1].from) < apart_m;
+      kept.push_back(pair ? joined_bearing(bearings[i], bearings[i + 1]) : bearings[i]);
+      if (pair) ++i;
+    }
+    bearings = std::move(kept);
   }
-  if (i < bearings.size()) joined.push_back(bearings[i]);
-  bearings = std::move(joined);
 }
 
 }  // namespace

@@ -42,8 +42,8 @@ std::optional<skein::fusion::Estimate> by_filter(std::span<const Bearing> bearin
 std::optional<skein::fusion::Estimate> by_triangulation(std::span<const Bearing> bearings,
                                                         const Interval& distances_m);
 
-/// So many bearings a track has at most. When there are more, neighbours become one, of the mean of
-/// both and the error of a mean.
+/// So many bearings a track has at most. When there are more, neighbours from near places become
+/// one, of the mean of both and the error of a mean.
 inline constexpr std::size_t kGreatestBearings = 1000;
 
 /// Which sites are where: from bearings of our own warner and tracks of the data link.

@@ -123,6 +123,22 @@ TEST_CASE("However long a flight, its bearings stay few and say as much") {
   }
 }
 
+TEST_CASE("However long an aircraft circles, a site stays where it is") {
+  AirDefencePicture picture(kReceiver);
+  Random random(40);
+  for (double time_s = 0; time_s < 1500; time_s += 0.05) {
+    const double angle = 60 * time_s / 2500;
+    const Local aircraft{2500 * std::sin(angle), 2500 * std::cos(angle), 1000};
+    const double bearing = course_between_rad(aircraft, kShort.antenna);
+    picture.hear({time_s, bearing + 0.035 * random.normal(), 0.035, kShort.waveform, 1e-6},
+                 known(kShort), aircraft);
+  }
+  const auto threats = picture.threats();
+  REQUIRE(threats.size() == 1);
+  const auto& mean = threats[0].position.mean;
+  CHECK(std::hypot(mean[0] - kShort.antenna.north_m, mean[1] - kShort.antenna.east_m) < 80);
+}
+
 TEST_CASE("By its power a site is placed sooner than by its bearings alone") {
   // Of a type that nobody knows the power of.
   Site unknown = kShort;
