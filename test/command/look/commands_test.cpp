@@ -691,7 +691,7 @@ TEST_CASE("what is recorded can be looked into, exported, and replayed") {
     CHECK_THAT(wrong.said(), Contains("did you mean 'plot'?"));
   }
   SECTION("replay to commands that look") {
-    Command replay({"replay", file, "--topics", "plot", "--rate", "0.1", "--domain", "80"});
+    Command replay({"replay", file, "--topics", "plot", "--rate", "0.02", "--domain", "80"});
     REQUIRE(replay.says("publishes plot"));
     Command echo({"echo", "plot", "--count", "1", "--json", "--domain", "80"});
     CHECK(echo.code() == 0);
