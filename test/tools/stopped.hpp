@@ -1,9 +1,7 @@
 #pragma once
 
 #include <signal.h>
-#include <sys/wait.h>
 #include <time.h>
-#include <unistd.h>
 
 #include <chrono>
 
@@ -15,19 +13,6 @@ inline void stop_process(pid_t process, std::chrono::milliseconds length) {
   ::kill(process, SIGSTOP);
   ::nanosleep(&time, nullptr);
   ::kill(process, SIGCONT);
-}
-
-/// The same of this one. Returns when its other threads have gone on for a moment.
-inline void stop_this_process(std::chrono::milliseconds length) {
-  const pid_t stopped = ::getpid();
-  const pid_t stops = ::fork();
-  if (stops == 0) {
-    stop_process(stopped, length);
-    ::_exit(0);
-  }
-  ::waitpid(stops, nullptr, 0);
-  const timespec moment{0, 20'000'000};
-  ::nanosleep(&moment, nullptr);
 }
 
 }  // namespace skein::test

@@ -20,7 +20,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Tick kHealthPeriod = 50;
-// Who has said nothing for a minute of the mission does not come back.
+// The executive counts an entity as lost after a minute of silence, until it speaks again.
 constexpr Tick kGivenUp = 60 * kHealthPeriod;
 // What somebody has told in the tick before is on its way here.
 constexpr auto kHeardWithin = 1s;
