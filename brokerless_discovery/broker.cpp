@@ -116,7 +116,10 @@ void Broker::State::tell() {
     telling = false;
   }
   for (const Change& change : changes) {
-    for (const auto& observer : told) (*observer)(change);
+    for (const auto& observer : told) {
+      std::lock_guard lock(observer->telling);
+      if (!observer->gone) observer->tell(change);
+    }
   }
 }
 
@@ -274,12 +277,17 @@ Table::Found Broker::all() const {
 std::uint64_t Broker::generation() const noexcept { return state_->generation; }
 
 Broker::Registration Broker::observe(std::function<void(const Change&)> observer) {
+  const auto added = std::make_shared<State::Observer>(std::move(observer));
   std::lock_guard lock(state_->mutex);
   const std::uint64_t id = ++state_->last_observer;
-  state_->observers[id] = std::make_shared<State::Observer>(std::move(observer));
-  return state_->registration([id](State& state) {
-    std::lock_guard lock(state.mutex);
-    state.observers.erase(id);
+  state_->observers[id] = added;
+  return state_->registration([id, added](State& state) {
+    {
+      std::lock_guard lock(state.mutex);
+      state.observers.erase(id);
+    }
+    std::lock_guard lock(added->telling);
+    added->gone = true;
   });
 }
 

@@ -137,7 +137,7 @@ class Broker {
   std::uint64_t generation() const noexcept;
 
   /// Calls `observer` for each change, one at a time, on `control`, until the returned registration
-  /// goes; what stands already is not repeated.
+  /// goes, which waits for a call on another thread; what stands already is not repeated.
   Registration observe(std::function<void(const Change&)> observer);
 
  private:

@@ -20,7 +20,13 @@ namespace skein::brokerless_discovery {
 /// watch's (broker_reading.cpp), what this peer tells leaves from whoever provides and from
 /// `control` (broker_writing.cpp); observers are told on `control` (broker.cpp).
 struct Broker::State : std::enable_shared_from_this<State> {
-  using Observer = std::function<void(const Change&)>;
+  /// Once gone, it is not called any more. Recursive, so that an observer may let itself go.
+  struct Observer {
+    explicit Observer(std::function<void(const Change&)> tell_) : tell(std::move(tell_)) {}
+    const std::function<void(const Change&)> tell;
+    std::recursive_mutex telling;
+    bool gone = false;
+  };
 
   struct Own {
     ServiceDescription description;

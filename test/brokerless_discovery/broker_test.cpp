@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <condition_variable>
+#include <future>
 #include <thread>
 
 #include "brokerless_discovery/process_watch.hpp"
@@ -455,6 +456,42 @@ TEST_CASE("observers hear of what comes and goes until they stop listening") {
       navigator.broker.add_service(navigator.describe(2, "A/INavigator", "navigator"));
   ground.control.run_all();
   CHECK(kinds.size() == 2);
+}
+
+TEST_CASE("an observer that lets itself go is not told of the changes that wait already") {
+  World world;
+  Peer ground(world, "ground");
+  int told = 0;
+  brokerless_discovery::Broker::Registration observation;
+  observation = ground.broker.observe([&](const Change&) {
+    ++told;
+    observation.withdraw();
+  });
+  const auto one = ground.broker.add_service(ground.describe(1, "A/INavigator", "navigator"));
+  const auto other = ground.broker.add_service(ground.describe(2, "A/INavigator", "navigator"));
+  ground.control.run_all();
+  CHECK(told == 1);
+}
+
+TEST_CASE("once an observer's registration has gone, no call of it is in progress") {
+  World world;
+  Peer ground(world, "ground");
+  std::promise<void> called;
+  std::promise<void> goes;
+  std::atomic<bool> returned = false;
+  auto observation = ground.broker.observe([&](const Change&) {
+    called.set_value();
+    goes.get_future().wait();
+    std::this_thread::sleep_for(20ms);
+    returned = true;
+  });
+  const auto service = ground.broker.add_service(ground.describe(1, "A/INavigator", "navigator"));
+  std::thread control([&] { ground.control.run_all(); });
+  called.get_future().wait();
+  goes.set_value();
+  observation.withdraw();
+  CHECK(returned);
+  control.join();
 }
 
 TEST_CASE("many changes at once are told by one task, all of them and in their order", "[R26]") {
