@@ -4,6 +4,7 @@
 #include <signal.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -21,20 +22,35 @@ namespace {
 // Who starts processes faster than they are killed is left to the next caller.
 constexpr int kMostPasses = 200;
 constexpr std::size_t kLongestMark = 64;
+// A process in execve() shows no environment for a moment, as one that has none always does.
+constexpr int kMostLooks = 20;
+constexpr timespec kBetweenLooks{0, 100'000};
+
+enum class Mark { Yes, No, Empty };
 
 /// Reads piece by piece; the end of one piece is searched together with the next.
-bool holds(int file, std::string_view mark) {
+Mark look_for(std::string_view mark, int file) {
   std::array<char, 4096> text;
   std::size_t kept = 0;
+  bool empty = true;
   while (true) {
     const auto size = ::read(file, text.data() + kept, text.size() - kept);
     if (size < 0 && errno == EINTR) continue;
-    if (size <= 0) return false;
+    if (size <= 0) return empty ? Mark::Empty : Mark::No;
+    empty = false;
     const std::size_t all = kept + static_cast<std::size_t>(size);
-    if (::memmem(text.data(), all, mark.data(), mark.size()) != nullptr) return true;
+    if (::memmem(text.data(), all, mark.data(), mark.size()) != nullptr) return Mark::Yes;
     kept = std::min(all, mark.size() - 1);
     std::memmove(text.data(), text.data() + all - kept, kept);
   }
+}
+
+/// False for one that has ended and for threads of the kernel.
+bool runs_a_program(pid_t number) {
+  std::array<char, 32> path;
+  std::array<char, 1> program;
+  std::snprintf(path.data(), path.size(), "/proc/%d/exe", number);
+  return ::readlink(path.data(), program.data(), program.size()) > 0;
 }
 
 /// The descriptor is opened before the environment is read, so that it is that process which dies,
@@ -44,8 +60,15 @@ bool kill_if_marked(pid_t number, std::string_view mark) {
   if (!process) return false;
   std::array<char, 32> path;
   std::snprintf(path.data(), path.size(), "/proc/%d/environ", number);
-  const FileDescriptor environment(::open(path.data(), O_RDONLY | O_CLOEXEC));
-  if (!environment || !holds(environment.get(), mark)) return false;
+  Mark found = Mark::Empty;
+  for (int look = 0; look < kMostLooks && found == Mark::Empty; ++look) {
+    if (look > 0) ::nanosleep(&kBetweenLooks, nullptr);
+    const FileDescriptor environment(::open(path.data(), O_RDONLY | O_CLOEXEC));
+    if (!environment) return false;
+    found = look_for(mark, environment.get());
+    if (found == Mark::Empty && !runs_a_program(number)) return false;
+  }
+  if (found != Mark::Yes) return false;
   return ::syscall(SYS_pidfd_send_signal, process.get(), SIGKILL, nullptr, 0) == 0;
 }
 

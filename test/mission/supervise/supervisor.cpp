@@ -337,6 +337,19 @@ TEST_CASE("What left its process's group and session goes with the process") {
   for (const pid_t process : numbers_in(pids)) CHECK_FALSE(exists(process));
 }
 
+TEST_CASE("What becomes another program as the mission ends goes with it, too") {
+  TemporaryFolder folder;
+  folder.write("pids", "");
+  const std::string pids = (folder.path() / "pids").string();
+  RecordedMission mission({supervised_mission(
+      R"(F='exec sh -c "$F"'; export F; for i in 0 1 2 3 4 5 6 7 8 9; do setsid sh -c 'echo $$ >> )" +
+      pids + R"(; eval "$F"' & done; while [ $(wc -l < )" + pids +
+      ") -lt 10 ]; do sleep 0.01; done")});
+  CHECK(mission.run().exit_code == 0);
+  REQUIRE(numbers_in(pids).size() == 10);
+  for (const pid_t process : numbers_in(pids)) CHECK_FALSE(exists(process));
+}
+
 TEST_CASE("When run() returns, no process of any group is left") {
   TemporaryFolder folder;
   const std::string pids = (folder.path() / "pids").string();
