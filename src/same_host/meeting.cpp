@@ -397,7 +397,9 @@ struct Meeting::State {
     const auto socket = std::make_shared<const HandedOver>(std::move(contact.socket));
     auto hello = make_packet<Hello>();
     hello.client = client;
-    if (send(socket->get(), &hello, sizeof hello, MSG_NOSIGNAL) != sizeof hello) {
+    // A provider that has closed already may have said why.
+    if (send(socket->get(), &hello, sizeof hello, MSG_NOSIGNAL) != sizeof hello && errno != EPIPE &&
+        errno != ECONNRESET) {
       refuse_to_join(std::strerror(errno));
     }
     pollfd answered{socket->get(), POLLIN, 0};

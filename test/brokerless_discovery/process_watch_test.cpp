@@ -44,7 +44,8 @@ struct Child {
   std::string address;
   FileDescriptor told;  // one byte for each end that it hears of
 
-  /// It watches nothing, or what listens at `target`, after it did what `prepare` says.
+  /// It watches nothing, or what listens at `target`, after it did what `prepare` says; without an
+  /// address if it has ended there.
   explicit Child(
       const std::string& target = {}, const std::function<void()>& prepare = [] {}) {
     int ends[2];
@@ -65,7 +66,7 @@ struct Child {
     told = FileDescriptor(ends[0]);
     char text[128];
     const ssize_t count = read(ends[0], text, sizeof text);
-    REQUIRE(count > 0);
+    REQUIRE(count >= 0);
     address.assign(text, static_cast<std::size_t>(count));
   }
 
@@ -171,14 +172,6 @@ bool has_child(pid_t pid) {
   const std::string number = std::to_string(pid);
   std::ifstream file("/proc/" + number + "/task/" + number + "/children");
   return static_cast<bool>(file >> pid);
-}
-
-bool may_make_a_user_namespace() {
-  const pid_t pid = fork();
-  if (pid == 0) _exit(unshare(CLONE_NEWUSER) == 0 ? 0 : 1);
-  int status = 1;
-  waitpid(pid, &status, 0);
-  return status == 0;
 }
 
 constexpr uid_t kAnother = 12'345;
@@ -528,12 +521,14 @@ TEST_CASE("what another user hands over is closed by a thread that nobody waits 
 }
 
 TEST_CASE("who is not mapped into a process's user namespace may not watch it", "[R27]") {
-  if (!may_make_a_user_namespace()) {
+  // The kernel shows both users by one number there.
+  const Child inside({}, [] {
+    if (unshare(CLONE_NEWUSER) != 0) _exit(1);
+  });
+  if (inside.address.empty()) {
     WARN("skipped: this process may not make a user namespace");
     return;
   }
-  // The kernel shows both users by one number there.
-  const Child inside({}, [] { REQUIRE(unshare(CLONE_NEWUSER) == 0); });
   const auto connections = connections_to(inside.address, 1);
   char octet;
   ssize_t size = -1;
