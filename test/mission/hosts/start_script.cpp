@@ -149,6 +149,7 @@ TEST_CASE(
     auto child = shell_child(name, "trap 'echo end " + name + "; exit 0' INT; echo begin " + name +
                                        "; ready; while :; do sleep 0.01; done");
     child.layer = layer;
+    child.rules.stop_timeout = 60s;  // a shell on a busy machine is slow to obey
     return child;
   };
   auto mission = mission_child("echo fly; ready; exit 0");
