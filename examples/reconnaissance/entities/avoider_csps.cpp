@@ -1,6 +1,9 @@
 #include "avoider_csps.hpp"
 
+#include <cmath>
 #include <vector>
+
+#include "threat_conversion.hpp"
 
 namespace reconnaissance {
 namespace {
@@ -16,6 +19,20 @@ recon::Avoidance avoidance(const ResolutionAdvisory& advisory) {
           advisory.climb_m_s.has_value(), advisory.climb_m_s.value_or(0), advisory.recovery};
 }
 
+/// As far as it leads until another course can be advised and flown, a course costs no more than
+/// that of the route.
+BandsAvoider::MayFly no_deeper_into_reach(const recon::Encounter& encounter) {
+  constexpr double kAhead_s = 60;
+  const TrafficState own = traffic_state(encounter.own);
+  const auto hazard = [own, discs = discs_of(encounter.weapons)](double course_rad) {
+    const TrafficState ahead = straight_on(on_course(own, course_rad), kAhead_s);
+    return hazard_of_leg(own.place, ahead.place, discs, std::hypot(own.north_m_s, own.east_m_s));
+  };
+  return [hazard, most = hazard(encounter.route_course_rad)](double course_rad) {
+    return hazard(course_rad) <= most;
+  };
+}
+
 }  // namespace
 
 recon::Avoidance Bands::advise(const recon::Encounter& encounter) {
@@ -23,7 +40,8 @@ recon::Avoidance Bands::advise(const recon::Encounter& encounter) {
   static_assert(static_cast<int>(AlertLevel::Warning) ==
                 static_cast<int>(recon::TrafficAlert::Warning));
   return avoidance(avoider_.advise(traffic_state(encounter.own), others_of(encounter),
-                                   encounter.route_course_rad, alert));
+                                   encounter.route_course_rad, alert,
+                                   no_deeper_into_reach(encounter)));
 }
 
 recon::Avoidance PotentialField::advise(const recon::Encounter& encounter) {

@@ -8,6 +8,7 @@
 #include "avoider_csps.hpp"
 #include "convert.hpp"
 #include "deciding.hpp"
+#include "threat_conversion.hpp"
 #include "topics.hpp"
 
 namespace reconnaissance {
@@ -29,6 +30,7 @@ CollisionManager::CollisionManager(skein::Entity& entity, const skein::Parameter
     : entity_(entity),
       flight_(entity, topic::kFlightState),
       traffic_(entity, topic::kTraffic, {}),
+      pictures_(entity, topic::kThreats, skein::TopicQos::state()),
       advisories_(entity.publisher<recon::ResolutionAdvisory>(topic::kAdvisory.name,
                                                               skein::TopicQos::state())),
       member_(entity, values, [this](Tick tick) { watch(tick); }) {}
@@ -45,7 +47,9 @@ void CollisionManager::watch(Tick tick) {
       return recon::TrafficMotion{place.north_m, place.east_m, place.height_m,
                                   of.north_m_s,  of.east_m_s,  of.up_m_s};
     };
-    recon::Encounter encounter{motion(*state), {}, state->route_course_rad, {}};
+    recon::Encounter encounter{motion(*state), {}, state->route_course_rad, {}, {}};
+    if (const auto picture = pictures_.at(tick))
+      encounter.weapons = weapons_of(discs_of(*picture, *frame_));
     for (const recon::OtherAircraft& each : traffic->others)
       encounter.others.push_back(motion(each));
     encounter.alert = assess(seconds_of(tick), encounter, *traffic);

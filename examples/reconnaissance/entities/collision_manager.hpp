@@ -10,13 +10,15 @@
 #include "skein/entity.hpp"
 #include "skein/parameters.hpp"
 #include "stream.hpp"
+#include "threats.idl.hpp"
 #include "traffic.idl.hpp"
 #include "traffic/alerting.hpp"
 
 namespace reconnaissance {
 
-/// Keeps the aircraft well clear of others, against the route if it must. It alerts by the rules of
-/// DO-365B; its CSPs say what to fly, and its Head takes the best that can be flown.
+/// Keeps the aircraft well clear of others, against the route if it must, and out of weapons' reach
+/// if it can. It alerts by the rules of DO-365B; its CSPs say what to fly, and its Head takes the
+/// best that can be flown.
 class CollisionManager {
  public:
   CollisionManager(skein::Entity& entity, const skein::ParameterValues& values);
@@ -33,6 +35,7 @@ class CollisionManager {
   std::map<std::uint32_t, Alert> alerts_;
   Stream<recon::FlightState> flight_;
   Stream<recon::Traffic> traffic_;
+  Stream<recon::ThreatPicture> pictures_;
   skein::Publisher<recon::ResolutionAdvisory> advisories_;
   Member member_;
 };

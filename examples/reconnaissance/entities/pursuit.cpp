@@ -8,37 +8,32 @@
 #include "deciding.hpp"
 #include "mission/order_check.hpp"
 #include "target_csps.hpp"
+#include "threat_conversion.hpp"
 
 namespace reconnaissance {
 namespace {
 
 recon::LoiterTask loiter_task(const StandOffTask& task) {
   const Motion &target = task.target, &own = task.aircraft;
-  recon::LoiterTask told{target.north_m,
-                         target.east_m,
-                         target.north_m_s,
-                         target.east_m_s,
-                         task.radius_m,
-                         task.greatest_distance_m,
-                         {own.north_m, own.east_m, std::atan2(own.east_m_s, own.north_m_s)},
-                         task.turn_radius_m,
-                         {}};
-  for (const ThreatDisc& each : task.weapons)
-    told.weapons.push_back({each.north_m, each.east_m, each.radius_m, each.kills_per_s});
-  return told;
+  return {target.north_m,
+          target.east_m,
+          target.north_m_s,
+          target.east_m_s,
+          task.radius_m,
+          task.greatest_distance_m,
+          {own.north_m, own.east_m, std::atan2(own.east_m_s, own.north_m_s)},
+          task.turn_radius_m,
+          weapons_of(task.weapons)};
 }
 
 StandOffTask stand_off_task(const recon::LoiterTask& told) {
-  StandOffTask task{{told.north_m, told.east_m, told.north_m_s, told.east_m_s},
-                    {told.aircraft.north_m, told.aircraft.east_m,
-                     std::cos(told.aircraft.course_rad), std::sin(told.aircraft.course_rad)},
-                    told.radius_m,
-                    told.greatest_distance_m,
-                    told.turn_radius_m,
-                    {}};
-  for (const recon::WeaponReach& each : told.weapons)
-    task.weapons.push_back({each.north_m, each.east_m, each.radius_m, each.kills_per_s});
-  return task;
+  return {{told.north_m, told.east_m, told.north_m_s, told.east_m_s},
+          {told.aircraft.north_m, told.aircraft.east_m, std::cos(told.aircraft.course_rad),
+           std::sin(told.aircraft.course_rad)},
+          told.radius_m,
+          told.greatest_distance_m,
+          told.turn_radius_m,
+          discs_of(told.weapons)};
 }
 
 Circle ordered_circle(const recon::LoiterCircle& told) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "convert.hpp"
+#include "planning/threat_discs.hpp"
 #include "threats.idl.hpp"
 #include "threats/air_defence_picture.hpp"
 
@@ -95,6 +96,33 @@ inline LinkTrack link_track(const LocalFrame& frame, const recon::LinkedSite& si
 inline skein::fusion::Estimate estimate(const recon::PlaceEstimate& place) {
   return {{place.north_m, place.east_m},
           {place.north_north_m2, place.north_east_m2, place.north_east_m2, place.east_east_m2}};
+}
+
+/// What the weapons of a picture may reach.
+inline std::vector<ThreatDisc> discs_of(const recon::ThreatPicture& picture,
+                                        const LocalFrame& frame) {
+  std::vector<ThreatDisc> discs;
+  for (const recon::Threat& threat : picture.threats) {
+    if (threat.lethal_range_m == 0) continue;
+    const Local site = local(frame, threat.position);
+    discs.push_back({site.north_m, site.east_m, reach_m(threat.lethal_range_m, threat.deviation_m),
+                     kKills_per_s});
+  }
+  return discs;
+}
+
+inline std::vector<ThreatDisc> discs_of(const std::vector<recon::WeaponReach>& weapons) {
+  std::vector<ThreatDisc> discs;
+  for (const recon::WeaponReach& each : weapons)
+    discs.push_back({each.north_m, each.east_m, each.radius_m, each.kills_per_s});
+  return discs;
+}
+
+inline std::vector<recon::WeaponReach> weapons_of(const std::vector<ThreatDisc>& discs) {
+  std::vector<recon::WeaponReach> weapons;
+  for (const ThreatDisc& each : discs)
+    weapons.push_back({each.north_m, each.east_m, each.radius_m, each.kills_per_s});
+  return weapons;
 }
 
 }  // namespace reconnaissance

@@ -3,6 +3,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "threat_conversion.hpp"
+
 namespace reconnaissance {
 namespace {
 
@@ -21,9 +23,7 @@ CollectionProblem problem_of(const recon::TourProblem& told) {
       task.passes.push_back(
           {pose(pass.begin), pose(pass.end), {pass.seconds, pass.fuel_kg, pass.hazard}});
   }
-  std::vector<ThreatDisc> discs;
-  for (const recon::WeaponReach& each : told.weapons)
-    discs.push_back({each.north_m, each.east_m, each.radius_m, each.kills_per_s});
+  const std::vector<ThreatDisc> discs = discs_of(told.weapons);
   const CruiseFigures cruise{told.speed_m_s, told.turn_radius_m, told.fuel_kg_s};
   const auto leg = [&](const RoutePose& from, const RoutePose& to) {
     return cost_of_leg(from, to, discs, cruise);

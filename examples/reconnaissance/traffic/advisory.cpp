@@ -55,7 +55,8 @@ const Manoeuvre& best_recovery(const std::vector<Manoeuvre>& tried) {
 
 ResolutionAdvisory BandsAvoider::advise(const TrafficState& own,
                                         std::span<const TrafficState> others,
-                                        double route_course_rad, AlertLevel alert) {
+                                        double route_course_rad, AlertLevel alert,
+                                        const MayFly& may_fly) {
   if (!avoiding_) {
     // An alert outlives its cause: where the route leads clear, it is flown.
     const bool route_conflicts =
@@ -65,28 +66,38 @@ ResolutionAdvisory BandsAvoider::advise(const TrafficState& own,
   } else if (!conflict(on_course(own, route_course_rad), others, kWidened, limits_.look_ahead_s)) {
     avoiding_ = false;
   }
-  if (avoiding_) return resolve(own, others);
+  if (avoiding_) return resolve(own, others, may_fly);
   side_ = Side::None;
   return {};
 }
 
+/// To the side that is nearer.
+std::optional<double> BandsAvoider::least_turn(const std::vector<Manoeuvre>& courses,
+                                               const MayFly& may_fly) {
+  const auto* right =
+      least_change(courses, [&](const auto& one) { return one.change >= 0 && may_fly(one.value); });
+  const auto* left =
+      least_change(courses, [&](const auto& one) { return one.change <= 0 && may_fly(one.value); });
+  if (!right && !left) return std::nullopt;
+  const double bonus = side_ == Side::None ? 0 : kPreferred_rad;
+  const double to_right = right ? right->change - (side_ == Side::Right ? bonus : 0) : 1e9;
+  const double to_left = left ? -left->change - (side_ == Side::Left ? bonus : 0) : 1e9;
+  const bool turn_right = to_right <= to_left + kCourseStep_rad / 2;
+  side_ = turn_right ? Side::Right : Side::Left;
+  return (turn_right ? right : left)->value;
+}
+
 ResolutionAdvisory BandsAvoider::resolve(const TrafficState& own,
-                                         std::span<const TrafficState> others) {
+                                         std::span<const TrafficState> others,
+                                         const MayFly& may_fly) {
   const auto courses = course_bands(own, others, kEnRoute, limits_);
-  const auto* right = least_change(courses, [](const auto& one) { return one.change >= 0; });
-  const auto* left = least_change(courses, [](const auto& one) { return one.change <= 0; });
-  if (right || left) {
-    const double bonus = side_ == Side::None ? 0 : kPreferred_rad;
-    const double to_right = right ? right->change - (side_ == Side::Right ? bonus : 0) : 1e9;
-    const double to_left = left ? -left->change - (side_ == Side::Left ? bonus : 0) : 1e9;
-    const bool turn_right = to_right <= to_left + kCourseStep_rad / 2;
-    side_ = turn_right ? Side::Right : Side::Left;
-    return {(turn_right ? right : left)->value, {}, false};
-  }
+  if (const auto course = least_turn(courses, may_fly)) return {course, {}, false};
   const auto climbs = climb_bands(own, others, kEnRoute, limits_);
   if (const auto* climb = least_change(climbs, [](const auto&) { return true; })) {
     return {{}, climb->value, false};
   }
+  if (const auto course = least_turn(courses, [](double) { return true; }))
+    return {course, {}, false};
   const Manoeuvre& course = best_recovery(courses);
   const Manoeuvre& climb = best_recovery(climbs);
   if (recovers_better(climb, course)) return {{}, climb.value, true};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 
@@ -22,7 +23,8 @@ struct ResolutionAdvisory {
 /// - The course that keeps well clear with the least change; to the right if both sides are alike
 ///   (ICAO Annex 2, 3.2.2.2: head-on, both turn right). A side once chosen is kept unless the other
 ///   needs 15° less.
-/// - If no course does, the climb rate with the least change.
+/// - If no course does that may be flown, the climb rate with the least change.
+/// - If no climb rate does either, any course that keeps well clear.
 /// - If none does either, recovery: of the manoeuvres that keep outside near mid-air collision and
 ///   of as large a part of the well-clear volume as any allows (made smaller by a tenth at a time),
 ///   the one that regains well clear soonest.
@@ -32,14 +34,20 @@ class BandsAvoider {
  public:
   explicit BandsAvoider(const ManoeuvreLimits& limits = {}) : limits_(limits) {}
 
+  /// Whether a course may be flown, whatever other aircraft do: it leads out of weapons' reach.
+  using MayFly = std::function<bool(double course_rad)>;
+
   /// Call about once a second with all traffic, and the highest alert about any of it.
-  ResolutionAdvisory advise(const TrafficState& own, std::span<const TrafficState> others,
-                            double route_course_rad, AlertLevel alert);
+  ResolutionAdvisory advise(
+      const TrafficState& own, std::span<const TrafficState> others, double route_course_rad,
+      AlertLevel alert, const MayFly& may_fly = [](double) { return true; });
 
  private:
   enum class Side { None, Left, Right };
 
-  ResolutionAdvisory resolve(const TrafficState& own, std::span<const TrafficState> others);
+  ResolutionAdvisory resolve(const TrafficState& own, std::span<const TrafficState> others,
+                             const MayFly& may_fly);
+  std::optional<double> least_turn(const std::vector<Manoeuvre>& courses, const MayFly& may_fly);
 
   ManoeuvreLimits limits_;
   Side side_ = Side::None;

@@ -75,6 +75,20 @@ TEST_CASE("where well clear is already lost, recovery regains it without a near 
   CHECK(given > 50);
 }
 
+TEST_CASE("a course into a weapon's reach is advised only if nothing else keeps well clear") {
+  const TrafficState own = flying({0, 0, 1000}, 0, 60);
+  const std::vector others{flying({14'000, 0, 1000}, kPi, 60)};
+  const auto advised = [&](const BandsAvoider::MayFly& may_fly) {
+    return BandsAvoider().advise(own, others, 0, AlertLevel::Warning, may_fly);
+  };
+  const auto right = advised([](double) { return true; });
+  CHECK(right.course_rad.value() > 0);
+  const auto left = advised([](double course_rad) { return course_rad < 0; });
+  CHECK(left.course_rad.value() < 0);
+  const auto nowhere = advised([](double) { return false; });
+  CHECK((nowhere.climb_m_s && !nowhere.course_rad && !nowhere.recovery));
+}
+
 TEST_CASE("head-on, both aircraft turn right, and pass well clear") {
   const TrafficState own = flying({0, 0, 1000}, 0, 60);
   const TrafficState other = flying({14'000, 0, 1000}, kPi, 60);
