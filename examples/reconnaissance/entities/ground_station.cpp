@@ -203,6 +203,8 @@ void GroundStation::see(const recon::MissionStatus& status) {
   {
     std::lock_guard lock(mutex_);
     if (phase_ == status.phase && reason_ == status.reason) return;
+    if (status.phase == recon::Phase::Egress && phase_ != status.phase)
+      judge_.flies_home(status.reason);
     phase_ = status.phase;
     reason_ = status.reason;
   }

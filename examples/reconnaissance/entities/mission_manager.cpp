@@ -12,6 +12,7 @@
 #include "mission/elements.hpp"
 #include "pursuit.hpp"
 #include "skein/error.hpp"
+#include "threat_conversion.hpp"
 #include "topics.hpp"
 #include "tour_csps.hpp"
 
@@ -25,7 +26,13 @@ using namespace std::chrono_literals;
 constexpr auto kServicesWithin = 60s;
 // Above the runway: higher than any hill, by as much as the camera likes.
 constexpr double kCollectionHeight_m = 750;
+// Of what is planned; and of all that was flown, by the weapons that were heard to guide.
 constexpr double kLeastSurvival = 0.97;
+constexpr double kLeastSurvived = 0.95;
+// For so long it listens, and so places the weapons that reach the runway, before it takes off.
+constexpr double kListens_s = 10;
+// Of the take-off, over the runway and beyond, until a route is flown.
+constexpr double kTakeOff_m = 3000;
 // What bars a way: less is the uncertainty of a place that moves.
 constexpr double kBarringHazard = 0.03;
 // Of the straight way home, what it takes with turns, wind and the approach.
@@ -67,15 +74,15 @@ bool is_at_place_of(const recon::Position& point, const recon::Position& asked) 
   return point.latitude_deg == asked.latitude_deg && point.longitude_deg == asked.longitude_deg;
 }
 
-std::vector<ThreatDisc> discs_of(const recon::ThreatPicture& picture, const LocalFrame& frame) {
-  std::vector<ThreatDisc> discs;
-  for (const recon::Threat& threat : picture.threats) {
-    if (threat.lethal_range_m == 0) continue;
-    const Local site = local(frame, threat.position);
-    discs.push_back({site.north_m, site.east_m, reach_m(threat.lethal_range_m, threat.deviation_m),
-                     kKills_per_s});
-  }
-  return discs;
+/// Of what guides at an aircraft now.
+double kills_per_s(const recon::ThreatPicture& picture, const LocalFrame& frame,
+                   const Local& aircraft) {
+  double kills = 0;
+  for (const recon::Threat& each : picture.threats)
+    if (each.mode == recon::RadarMode::Guidance &&
+        is_within(aircraft, discs_of({picture.tick, picture.epoch, {each}}, frame)))
+      kills += kKills_per_s;
+  return kills;
 }
 
 double area_m2(const std::vector<ThreatDisc>& threats) {
@@ -153,13 +160,21 @@ void MissionManager::manage(Tick tick) {
 }
 
 Conduct::Situation MissionManager::situation(Tick tick, const recon::FlightState& state) {
-  if (const auto picture = pictures_.at(tick)) threats_ = discs_of(*picture, *frame_);
+  if (const auto picture = pictures_.at(tick)) {
+    threats_ = discs_of(*picture, *frame_);
+    suffered_.hazard +=
+        seconds_of(tick - looked_) * kills_per_s(*picture, *frame_, local(*frame_, state.position));
+  }
+  looked_ = tick;
   const auto mode = mode_.at(tick);
   Conduct::Situation now;
   return_home_.reset();
+  if (const auto cause = excess(suffered_, {.least_survival = kLeastSurvived}))
+    return_home_ = "a weapon guides, and what was flown " + *cause;
   if (mode && mode->flight >= recon::FlightOrder::ReturnHome) return_home_ = mode->cause;
   nothing_new_ = mode && mode->flight >= recon::FlightOrder::BeginNothingNew;
-  now.all_fine = mode && mode->mode == recon::Mode::Normal && !nothing_new_;
+  now.all_fine =
+      mode && mode->mode == recon::Mode::Normal && !nothing_new_ && seconds_of(tick) >= kListens_s;
   now.mode = mode_of(state.mode);
   now.height_m = state.position.height_m;
   if (state.route != route_.number) return now;
@@ -187,6 +202,8 @@ MissionManager::Order MissionManager::reconsider(const recon::FlightState& state
     if (const auto cause = contradiction(state, elements))
       return conduct_->give_up("the order contradicts itself: " + *cause);
     if (!now.all_fine || !conduct_->tour().empty()) return {};
+    if (const auto cause = excess(take_off_and_landing(), {.least_survival = kLeastSurvival}))
+      return conduct_->give_up("weapons reach the runway: take-off and landing " + *cause);
     tour(state, elements, "planned");
     const bool none = conduct_->tour().empty() && !elements.elements.empty();
     return none ? conduct_->give_up(
@@ -313,6 +330,17 @@ std::optional<std::string> MissionManager::contradiction(const recon::FlightStat
   return std::nullopt;
 }
 
+/// What is flown in any case.
+FlightCost MissionManager::take_off_and_landing() const {
+  const Strip runway = strip(*frame_, runway_);
+  std::vector<Local> way;
+  for (const WayPoint& each : approach(runway, {})) way.push_back(each.place);
+  way.push_back(on_centre_line(runway, kTakeOff_m, 0));
+  FlightCost cost;
+  cost.hazard = hazard_of_way(way, threats_, cruise_.speed_m_s);
+  return cost;
+}
+
 void MissionManager::loiter(const Circle& circle, Tick tick) {
   controller_->loiter(position(*frame_, circle.centre),
                       circle.clockwise ? circle.radius_m : -circle.radius_m, tick);
@@ -367,8 +395,7 @@ MissionManager::Order MissionManager::tour(const recon::FlightState& state,
     recon::TourTask& task = problem.tasks.emplace_back(each.name, each.priority);
     for (const CollectionPass& pass : passes_of(each, wide)) task.passes.push_back(tour_pass(pass));
   }
-  for (const ThreatDisc& each : threats_)
-    problem.weapons.push_back({each.north_m, each.east_m, each.radius_m, each.kills_per_s});
+  problem.weapons = weapons_of(threats_);
   problem.speed_m_s = cruise_.speed_m_s;
   problem.turn_radius_m = cruise_.turn_radius_m;
   problem.fuel_kg_s = cruise_.fuel_kg_s;
@@ -426,10 +453,8 @@ std::optional<recon::Tour> MissionManager::ask_tour(const recon::TourProblem& pr
   });
   task.evaluate.check(
       "keeps the limits", [&](const recon::Tour& tour) -> std::optional<std::string> {
-        if (tour.fuel_kg <= problem.fuel_kg && tour.seconds <= problem.endurance_s &&
-            std::exp(-tour.hazard) >= problem.least_survival - 1e-9)
-          return std::nullopt;
-        return "it takes more fuel, time or risk than there is";
+        return excess({tour.seconds, tour.fuel_kg, tour.hazard},
+                      {problem.endurance_s, problem.fuel_kg, problem.least_survival});
       });
   try {
     return decide(entity_, task);

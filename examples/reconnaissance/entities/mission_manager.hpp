@@ -50,6 +50,7 @@ class MissionManager : public recon::IMissionManager {
   bool is_missed(const recon::Element& element) const;
   bool may_wait(const recon::FlightState& state) const;
   double left_s(Tick tick) const;
+  FlightCost take_off_and_landing() const;
   std::vector<CollectionPass> passes_of(const recon::Element& element,
                                         const std::vector<ThreatDisc>& wide) const;
   std::optional<std::string> contradiction(const recon::FlightState& state,
@@ -83,6 +84,8 @@ class MissionManager : public recon::IMissionManager {
   recon::Route route_;                      // that was ordered last
   std::vector<WayPoint> through_;           // what it was to lead over
   std::vector<ThreatDisc> threats_;         // as last seen
+  FlightCost suffered_;                     // by what was heard of weapons that guide,
+  Tick looked_ = 0;                         // until then
   double planned_area_m2_ = 0;              // that they reached over at the last plan
   double planned_s_ = 0;                    // when that was
   double look_again_s_ = kLookAgain_s;      // after it, while it flies home for want of a tour

@@ -88,7 +88,8 @@ Verdict Judge::conclude(const std::string& ended, const std::vector<Check>& more
         fmt::format("{:.0f} s in the air and on the runway, at most {:.0f}", verdict.duration_s,
                     conditions_.longest_s));
   check("targets", collected_ >= wanted_,
-        fmt::format("{} of {} elements {}", collected_, wanted_, how_collected_));
+        fmt::format("{} of {} elements {}", collected_, wanted_, how_collected_) +
+            (collected_ >= wanted_ || why_home_.empty() ? "" : "; it flew home: " + why_home_));
   verdict.checks.insert(verdict.checks.end(), more.begin(), more.end());
   check("survival", survival_ >= conditions_.least_survival,
         fmt::format("survived the air defence with a probability of {:.3f}, at least {:.3f}; "

@@ -78,6 +78,9 @@ class Judge {
   /// followed the aircraft.
   void suffer(double survival, double tracked_s);
 
+  /// Why it flies home: the cause if not all is collected.
+  void flies_home(const std::string& why) { why_home_ = why; }
+
   /// Whether it has landed, and stands.
   bool standing() const { return stood_s_.has_value(); }
   double duration_s() const { return last_.time_s - took_off_s_.value_or(last_.time_s); }
@@ -95,6 +98,7 @@ class Judge {
   std::size_t collected_ = 0;
   std::size_t wanted_ = 0;
   std::string how_collected_ = "collected";
+  std::string why_home_;
   /// The least of all: the greater of both distances as a share of what is well clear.
   double separation_ = std::numeric_limits<double>::infinity();
   Local nearest_{};  ///< Of the other from the aircraft, then.

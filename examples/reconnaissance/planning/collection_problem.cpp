@@ -1,5 +1,7 @@
 #include "planning/collection_problem.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -28,6 +30,19 @@ bool covers(const FlightCost& a, const FlightCost& b) {
 FlightCost FlightLimits::most() const {
   return {endurance_s, fuel_kg,
           least_survival > 0 ? -std::log(least_survival) : std::numeric_limits<double>::infinity()};
+}
+
+std::optional<std::string> excess(const FlightCost& estimate, const FlightLimits& limits) {
+  constexpr double kRounding = 1e-9;
+  const FlightCost most = limits.most();
+  if (estimate.hazard > most.hazard + kRounding)
+    return fmt::format("survives with a probability of {:.3f}, at least {:.3f}",
+                       std::exp(-estimate.hazard), limits.least_survival);
+  if (estimate.seconds > most.seconds)
+    return fmt::format("takes {:.0f} s, at most {:.0f}", estimate.seconds, most.seconds);
+  if (estimate.fuel_kg > most.fuel_kg)
+    return fmt::format("burns {:.1f} kg, at most {:.1f}", estimate.fuel_kg, most.fuel_kg);
+  return std::nullopt;
 }
 
 CollectionProblem::CollectionProblem(const RoutePose& start, const RoutePose& landing,

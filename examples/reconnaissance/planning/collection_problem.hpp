@@ -2,6 +2,8 @@
 
 #include <functional>
 #include <limits>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "planning/dubins_length.hpp"
@@ -29,6 +31,10 @@ struct FlightLimits {
 
   FlightCost most() const;
 };
+
+/// Why an estimate is not within the limits, in words that follow its subject ("survives with …");
+/// nullopt if it is. What it decides is not flown, or no further.
+std::optional<std::string> excess(const FlightCost& estimate, const FlightLimits& limits);
 
 /// One way to collect an element of interest: where and on which course its collection begins and
 /// ends, and what it takes.

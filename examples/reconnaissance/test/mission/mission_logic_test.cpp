@@ -270,8 +270,10 @@ TEST_CASE("each condition that is not kept fails the flight, and is named") {
   CHECK_THAT(reason_of([](Flown& f) {
                f.fly();
                f.judge.count(1, 2);
+               f.judge.flies_home("a threat bars the way");
              }),
-             Contains("targets: 1 of 2"));
+             Contains("targets: 1 of 2 elements collected as finely as they were ordered; it flew "
+                      "home: a threat bars the way"));
   CHECK_THAT(reason_of([](Flown& f) {
                f.fly();
                f.judge.suffer(0.9, 12);

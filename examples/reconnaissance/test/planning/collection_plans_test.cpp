@@ -42,6 +42,15 @@ std::vector<FlightLimits> some_limits() {
 
 }  // namespace
 
+TEST_CASE("what an estimate exceeds is said with the limit, and decides") {
+  const FlightLimits limits{2400, 60, 0.95};
+  CHECK_FALSE(excess({2400, 60, -std::log(0.95)}, limits));
+  CHECK_FALSE(excess({1e9, 1e9, 1e9}, {}));
+  CHECK(excess({0, 0, 0.5}, limits) == "survives with a probability of 0.607, at least 0.950");
+  CHECK(excess({2500, 0, 0}, limits) == "takes 2500 s, at most 2400");
+  CHECK(excess({0, 61, 0}, limits) == "burns 61.0 kg, at most 60.0");
+}
+
 TEST_CASE("the exact plan is the best of all orders, subsets and passes") {
   int dropping = 0;
   for (std::uint64_t seed = 1; seed <= 16; ++seed) {
