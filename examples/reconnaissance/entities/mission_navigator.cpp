@@ -35,6 +35,10 @@ constexpr double kHighest_m = 4000;
 constexpr double kShareOfClimb = 0.9;
 // Of a site that stands where it is thought to be.
 constexpr double kMast_m = 10;
+// Turns are flown less tightly than they are drawn: so near to what a weapon reaches, planners
+// reckon with a thousandth of its kills, and keep further away where that is no long detour.
+constexpr double kBeside_m = 400;
+constexpr double kShareBeside = 1e-3;
 // Metres of detour that an expected kill is worth: more than any way around.
 constexpr double kKillWeight_m = 1e6;
 // Between the course that is flown and that of a way, from which on one turns back.
@@ -273,13 +277,17 @@ AE_navigator::Problem Navigator::problem_of(const recon::RouteRequest& request) 
     // Planners know no site beyond their tile: in the tile, this disc covers what that one does.
     const Local there = tile_.to_tile(geodetic(threat.position)), site = tile_.nearest(there);
     const double beyond_m = map_distance_m(there, site);
+    const auto add = [&](double range_m, double kills_per_s) {
+      if (range_m <= beyond_m) return;
+      problem.missile_sites.push_back({fmt::format("{} {}", threat.kind, threat.number),
+                                       {site.north_m, site.east_m},
+                                       kMast_m,
+                                       std::sqrt(range_m * range_m - beyond_m * beyond_m),
+                                       kills_per_s});
+    };
     const double range_m = reach_m(threat.lethal_range_m, threat.deviation_m);
-    if (range_m <= beyond_m) continue;
-    problem.missile_sites.push_back({fmt::format("{} {}", threat.kind, threat.number),
-                                     {site.north_m, site.east_m},
-                                     kMast_m,
-                                     std::sqrt(range_m * range_m - beyond_m * beyond_m),
-                                     kKills_per_s});
+    add(range_m, kKills_per_s);
+    add(range_m + kBeside_m, kKills_per_s * kShareBeside);
   }
   return problem;
 }
