@@ -19,15 +19,26 @@ constexpr double kLeastApart_m = 100;
 constexpr double kLeastMove_m = 100;
 // Of the track of an emitter whose power is unknown.
 constexpr Interval kAnywhere_m{1000, 60000};
+// So many intercepts give a distance, from places that differ by less than this share of it.
+constexpr int kPowers = 4;
+constexpr double kLeastParallax = 0.1;
 
-Interval possible_distances_m(const Intercept& intercept, const std::string& emitter,
-                              const WarnerReceiver& receiver) {
+std::optional<Interval> distances_by_power_m(const Intercept& intercept, const std::string& emitter,
+                                             const WarnerReceiver& receiver) {
   for (const EmitterType& type : emitter_types()) {
     if (type.name != emitter) continue;
     return distance_by_power_m(intercept.power_w, type.radiated_power_w,
                                intercept.waveform.radio_frequency_hz, receiver.power_sigma_db);
   }
-  return kAnywhere_m;
+  return std::nullopt;
+}
+
+/// The mean of so many, of which the last is `one`, and of independent errors.
+Interval mean_distances_m(const Interval& others, const Interval& one, int count) {
+  const auto middle = [](const Interval& of) { return std::log(of.least * of.greatest) / 2; };
+  const double centre = std::lerp(middle(others), middle(one), 1.0 / count);
+  const double half = std::log(one.greatest / one.least) / 2 / std::sqrt(count);
+  return {std::exp(centre - half), std::exp(centre + half)};
 }
 
 Bearing joined_bearing(const Bearing& a, const Bearing& b) {
@@ -96,6 +107,7 @@ void AirDefencePicture::hear(const Intercept& intercept, const Identification& i
     if (track->confirmation.look(track == best)) track->confirmed = true;
   }
   if (best) {
+    if (best->powers < kPowers) measure(*best, intercept, aircraft);
     best->filter.update(bearing);
     if (best->bearings.size() == kGreatestBearings) join_neighbours(best->bearings);
     best->bearings.push_back(bearing);
@@ -103,14 +115,28 @@ void AirDefencePicture::hear(const Intercept& intercept, const Identification& i
     best->last_heard_s = intercept.time_s;
     return;
   }
-  const Interval distances_m = possible_distances_m(intercept, identification.emitter, receiver_);
+  const auto by_power_m = distances_by_power_m(intercept, identification.emitter, receiver_);
+  const Interval distances_m = by_power_m.value_or(kAnywhere_m);
   tracks_.push_back({next_id_++,
                      identification,
                      distances_m,
                      BearingFilter(bearing, distances_m.least, distances_m.greatest),
                      {bearing},
-                     intercept.time_s});
+                     intercept.time_s,
+                     by_power_m ? 1 : kPowers});
   tracks_.back().confirmation.look(true);
+}
+
+void AirDefencePicture::measure(Track& track, const Intercept& intercept, const Local& aircraft) {
+  const auto one_m = distances_by_power_m(intercept, track.identification.emitter, receiver_);
+  const Bearing& first = track.bearings.front();
+  if (!one_m || map_distance_m(first.from, aircraft) > kLeastParallax * track.distances_m.least) {
+    track.powers = kPowers;
+    return;
+  }
+  track.distances_m = mean_distances_m(track.distances_m, *one_m, ++track.powers);
+  track.filter = BearingFilter(first, track.distances_m.least, track.distances_m.greatest);
+  for (const Bearing& each : std::span(track.bearings).subspan(1)) track.filter.update(each);
 }
 
 std::vector<Threat> AirDefencePicture::threats(const Locate& locate) const {

@@ -90,9 +90,13 @@ class AirDefencePicture {
     BearingFilter filter;
     std::vector<Bearing> bearings;
     double last_heard_s;
+    int powers;  // of which `distances_m` is the mean
     TrackConfirmation confirmation{6, 10};
     bool confirmed = false;
   };
+
+  /// The track's distances by one power more, if from nearly the same place.
+  void measure(Track& track, const Intercept& intercept, const Local& aircraft);
 
   WarnerReceiver receiver_;
   std::uint32_t next_id_ = 1;

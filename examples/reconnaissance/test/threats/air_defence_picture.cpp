@@ -45,6 +45,11 @@ Identification known(const Site& site) { return {site.type, RadarMode::Search, 0
 
 std::vector<double> truth(const Site& site) { return {site.antenna.north_m, site.antenna.east_m}; }
 
+double power_w(const Local& aircraft) {
+  return received_power_w(kShort.radiated_power_w, kShort.waveform.radio_frequency_hz,
+                          slant_range_m(aircraft, kShort.antenna));
+}
+
 /// What another aircraft makes of its own bearings, from the far side.
 Estimate from_elsewhere(const Site& site, Random& random) {
   std::vector<Bearing> bearings;
@@ -102,8 +107,8 @@ TEST_CASE("However long a flight, its bearings stay few and say as much") {
         std::atan2(kShort.antenna.east_m, kShort.antenna.north_m - on_leg(time_s).north_m);
     // Better than they say, so that all fit.
     all.push_back({on_leg(time_s), bearing + 0.015 * random.normal(), 0.035});
-    picture.hear({time_s, all.back().bearing_rad, 0.035, kShort.waveform, 1e-6}, known(kShort),
-                 on_leg(time_s));
+    picture.hear({time_s, all.back().bearing_rad, 0.035, kShort.waveform, power_w(on_leg(time_s))},
+                 known(kShort), on_leg(time_s));
   }
   std::size_t kept = 0;
   const auto threats = picture.threats([&](std::span<const Bearing> bearings, const Interval&) {
@@ -130,8 +135,9 @@ TEST_CASE("However long an aircraft circles, a site stays where it is") {
     const double angle = 60 * time_s / 2500;
     const Local aircraft{2500 * std::sin(angle), 2500 * std::cos(angle), 1000};
     const double bearing = course_between_rad(aircraft, kShort.antenna);
-    picture.hear({time_s, bearing + 0.035 * random.normal(), 0.035, kShort.waveform, 1e-6},
-                 known(kShort), aircraft);
+    picture.hear(
+        {time_s, bearing + 0.035 * random.normal(), 0.035, kShort.waveform, power_w(aircraft)},
+        known(kShort), aircraft);
   }
   const auto threats = picture.threats();
   REQUIRE(threats.size() == 1);
@@ -155,6 +161,25 @@ TEST_CASE("By its power a site is placed sooner than by its bearings alone") {
   };
   // 8.5 s and 17.5 s.
   CHECK(seconds_until_placed(kShort) < 0.6 * seconds_until_placed(unknown));
+}
+
+TEST_CASE("Who stands still places a site by several powers, and is no surer than he may be") {
+  double sum = 0;
+  for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
+    AirDefencePicture picture(kReceiver);
+    Random random(seed);
+    for (double time_s = 0; time_s < 40; time_s += 4) {
+      const Emission emission{
+          1, time_s, kShort.antenna, RadarMode::Search, kShort.waveform, kShort.radiated_power_w};
+      picture.hear(receive(emission, {}, kReceiver, flat, random).value(), known(kShort), {});
+    }
+    const auto threats = picture.threats();
+    REQUIRE(threats.size() == 1);
+    CHECK(greatest_deviation_m(threats[0].position) < 3000);
+    sum += nees(threats[0].position, truth(kShort));
+  }
+  CHECK(sum / kRuns < bound(0.9999));
+  CHECK(sum / kRuns > bound(0.0001));
 }
 
 TEST_CASE("Wrong identifications now and then make no threats") {
