@@ -18,6 +18,11 @@ bool is_clear(const Circle& circle, const ThreatDisc& weapon) {
   return map_distance_m(circle.centre, weapon) >= weapon.radius_m + circle.radius_m;
 }
 
+bool is_on_the_right(const Local& place, const Motion& aircraft) {
+  const double north = place.north_m - aircraft.north_m, east = place.east_m - aircraft.east_m;
+  return east * aircraft.north_m_s - north * aircraft.east_m_s >= 0;
+}
+
 double furthest_m(const Circle& circle, const Motion& target) {
   return map_distance_m(circle.centre, target) + circle.radius_m;
 }
@@ -25,13 +30,10 @@ double furthest_m(const Circle& circle, const Motion& target) {
 }  // namespace
 
 Circle circle_about(const StandOffTask& task) {
-  const Motion &target = task.target, &own = task.aircraft;
-  const double north = target.north_m - own.north_m, east = target.east_m - own.east_m;
-  const bool on_the_right = east * own.north_m_s - north * own.east_m_s >= 0;
-  return {
-      {target.north_m + kAhead_s * target.north_m_s, target.east_m + kAhead_s * target.east_m_s, 0},
-      task.radius_m,
-      on_the_right};
+  const Motion& target = task.target;
+  const Local centre{target.north_m + kAhead_s * target.north_m_s,
+                     target.east_m + kAhead_s * target.east_m_s, 0};
+  return {centre, task.radius_m, is_on_the_right(centre, task.aircraft)};
 }
 
 std::optional<Circle> circle_beside(const StandOffTask& task) {
@@ -42,6 +44,8 @@ std::optional<Circle> circle_beside(const StandOffTask& task) {
         task.weapons, [&](const ThreatDisc& each) { return is_clear(circle, each); });
     if (weapon == task.weapons.end()) {
       if (furthest_m(circle, task.target) > task.greatest_distance_m) return std::nullopt;
+      // The other way it would be joined by a wide turn, which leads into reach.
+      circle.clockwise = is_on_the_right(circle.centre, task.aircraft);
       return circle;
     }
     const double away_m = weapon->radius_m + circle.radius_m + kRoom_m;

@@ -57,6 +57,18 @@ TEST_CASE(
   CHECK(distance_m(*beside, 1000, 2040) < 800);
 }
 
+TEST_CASE("a circle beside a target is flown in the sense in which its own centre is passed") {
+  StandOffTask past = task();
+  // The target is ahead on the left; a weapon moves the circle to the right.
+  past.aircraft = {0, 2100, 60, 0};
+  past.weapons = {{1000, 2040 - 8500, 8100, 0.02}};
+  CHECK_FALSE(circle_about(past).clockwise);
+  const auto beside = circle_beside(past);
+  REQUIRE(beside);
+  CHECK(beside->centre.east_m > 2100);
+  CHECK(beside->clockwise);
+}
+
 TEST_CASE("where the target could not be seen from a safe circle there is none") {
   StandOffTask deep = task();
   deep.weapons = {{1000, 2000 + 7000, 8000, 0.02}};
