@@ -199,7 +199,7 @@ void EoiManager::place(recon::Element& element, const recon::Threat& threat) {
   element.found = true;
   element.line = {threat.position};
   element.deviation_m = threat.deviation_m;
-  element.collected = element.collected || element.deviation_m <= element.wanted_deviation_m;
+  element.collected = element.collected || placed_within_m(element) <= element.wanted_deviation_m;
 }
 
 /// A target that was found is not let out of sight. Else of those that are not collected and lie

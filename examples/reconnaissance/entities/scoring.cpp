@@ -6,6 +6,7 @@
 
 #include "convert.hpp"
 #include "stream.hpp"
+#include "target_conversion.hpp"
 #include "topics.hpp"
 
 namespace reconnaissance {
@@ -101,7 +102,7 @@ std::string collected_text(const recon::Element& element) {
       return fmt::format("followed for {:.0f} s, wanted {:.0f}", element.followed_s,
                          element.wanted_s);
     case recon::ElementTask::LocateEmitter:
-      return fmt::format("placed within {:.0f} m, wanted {:.0f}", element.deviation_m,
+      return fmt::format("placed within {:.0f} m, wanted {:.0f}", placed_within_m(element),
                          element.wanted_deviation_m);
     case recon::ElementTask::TakeImages:
       break;

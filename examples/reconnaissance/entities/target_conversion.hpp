@@ -9,6 +9,9 @@
 
 namespace reconnaissance {
 
+/// So near an emitter is to where it is placed, with a probability of 0.95 along any line.
+inline double placed_within_m(const recon::Element& element) { return 2 * element.deviation_m; }
+
 inline recon::LocalPlace local_place(const Local& place) {
   return {place.north_m, place.east_m, place.height_m};
 }
