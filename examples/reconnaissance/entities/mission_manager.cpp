@@ -30,7 +30,7 @@ constexpr double kCollectionHeight_m = 750;
 constexpr double kLeastSurvival = 0.97;
 constexpr double kLeastSurvived = 0.95;
 // For so long it listens, and so places the weapons that reach the runway, before it takes off.
-constexpr double kListens_s = 10;
+constexpr double kListens_s = 30;
 // Of the take-off, over the runway and beyond, until a route is flown.
 constexpr double kTakeOff_m = 3000;
 // What bars a way: less is the uncertainty of a place that moves.
@@ -83,6 +83,21 @@ double kills_per_s(const recon::ThreatPicture& picture, const LocalFrame& frame,
         is_within(aircraft, discs_of({picture.tick, picture.epoch, {each}}, frame)))
       kills += kKills_per_s;
   return kills;
+}
+
+/// Whether it comes into reach on its way back to its route, as after an avoidance: nobody has
+/// looked at what is beside.
+bool strays(const recon::FlightState& state, const recon::Route& route, const LocalFrame& frame,
+            const std::vector<ThreatDisc>& threats) {
+  constexpr double kBeside_m = 500, kAhead_s = 25;
+  if (state.avoiding || state.leg + 1 >= route.points.size()) return false;
+  const Local own = local(frame, state.position);
+  const Line leg{local(frame, route.points[state.leg]), local(frame, route.points[state.leg + 1])};
+  const Motion motion{own.north_m, own.east_m, state.north_m_s, state.east_m_s};
+  if (std::abs(along(leg, motion).right_m) < kBeside_m || is_within(own, threats)) return false;
+  const Local ahead{own.north_m + kAhead_s * state.north_m_s,
+                    own.east_m + kAhead_s * state.east_m_s, own.height_m};
+  return hazard_of_leg(own, ahead, threats, 1) > 0;
 }
 
 double area_m2(const std::vector<ThreatDisc>& threats) {
@@ -162,6 +177,7 @@ void MissionManager::manage(Tick tick) {
 Conduct::Situation MissionManager::situation(Tick tick, const recon::FlightState& state) {
   if (const auto picture = pictures_.at(tick)) {
     threats_ = discs_of(*picture, *frame_);
+    certain_ = discs_of(*picture, *frame_, certain_reach_m);
     suffered_.hazard +=
         seconds_of(tick - looked_) * kills_per_s(*picture, *frame_, local(*frame_, state.position));
   }
@@ -205,6 +221,10 @@ MissionManager::Order MissionManager::reconsider(const recon::FlightState& state
     if (const auto cause = excess(take_off_and_landing(), {.least_survival = kLeastSurvival}))
       return conduct_->give_up("weapons reach the runway: take-off and landing " + *cause);
     tour(state, elements, "planned");
+    if (conduct_->tour().empty()) {  // in the air weapons are placed better
+      threats_ = certain_;
+      tour(state, elements, "planned");
+    }
     const bool none = conduct_->tour().empty() && !elements.elements.empty();
     return none ? conduct_->give_up(
                       "no element can be collected within the time, fuel and risk that are allowed")
@@ -212,7 +232,8 @@ MissionManager::Order MissionManager::reconsider(const recon::FlightState& state
   }
   if (conduct_->may_try_again() && !return_home_)
     if (Order order = pursue(state, elements)) return order;
-  const bool barred = now.legs > 0 && is_barred(state);
+  const bool barred =
+      now.legs > 0 && (is_barred(state) || strays(state, route_, *frame_, threats_));
   if (may_look_again(now, state.tick)) {
     look_again_s_ *= 2;
     const bool others = others_threaten();

@@ -84,6 +84,7 @@ class MissionManager : public recon::IMissionManager {
   recon::Route route_;                      // that was ordered last
   std::vector<WayPoint> through_;           // what it was to lead over
   std::vector<ThreatDisc> threats_;         // as last seen
+  std::vector<ThreatDisc> certain_;         // of their reach what is sure
   FlightCost suffered_;                     // by what was heard of weapons that guide,
   Tick looked_ = 0;                         // until then
   double planned_area_m2_ = 0;              // that they reached over at the last plan

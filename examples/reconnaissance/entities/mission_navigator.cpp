@@ -36,15 +36,15 @@ constexpr double kShareOfClimb = 0.9;
 // Of a site that stands where it is thought to be.
 constexpr double kMast_m = 10;
 // Turns are flown less tightly than they are drawn: so near to what a weapon reaches, planners
-// reckon with a thousandth of its kills, and keep further away where that is no long detour.
+// reckon with a few thousandths of its kills, and keep further away where that is no long detour.
 constexpr double kBeside_m = 400;
-constexpr double kShareBeside = 1e-3;
+constexpr double kShareBeside = 3e-3;
 // Metres of detour that an expected kill is worth: more than any way around.
 constexpr double kKillWeight_m = 1e6;
 // Between the course that is flown and that of a way, from which on one turns back.
 constexpr double kTurnsBack_rad = 1.5;
 // Expected kills, by which turns that are flown may be worse than the way that a planner found.
-constexpr double kTurnHazard = 1e-3;
+constexpr double kTurnHazard = 2e-4;
 
 AE_navigator::Position in_tile(const Tile& tile, const recon::Position& place) {
   const Local at = tile.to_tile(geodetic(place));

@@ -98,14 +98,15 @@ inline skein::fusion::Estimate estimate(const recon::PlaceEstimate& place) {
           {place.north_north_m2, place.north_east_m2, place.north_east_m2, place.east_east_m2}};
 }
 
-/// What the weapons of a picture may reach.
+/// What the weapons of a picture may reach, or by another `reach`.
 inline std::vector<ThreatDisc> discs_of(const recon::ThreatPicture& picture,
-                                        const LocalFrame& frame) {
+                                        const LocalFrame& frame,
+                                        double (*reach)(double, double) = reach_m) {
   std::vector<ThreatDisc> discs;
   for (const recon::Threat& threat : picture.threats) {
     if (threat.lethal_range_m == 0) continue;
     const Local site = local(frame, threat.position);
-    discs.push_back({site.north_m, site.east_m, reach_m(threat.lethal_range_m, threat.deviation_m),
+    discs.push_back({site.north_m, site.east_m, reach(threat.lethal_range_m, threat.deviation_m),
                      kKills_per_s});
   }
   return discs;

@@ -55,13 +55,18 @@ CollectionPass straight_past(const Local& middle, double half_m, double course_r
   return pass;
 }
 
+// A site that is badly placed may be anywhere within so many deviations.
+constexpr double kPlacedWithin = 2;
+
 }  // namespace
 
 double reach_m(double lethal_range_m, double deviation_m) {
-  // A site that is badly placed may be anywhere within that of its error, up to a limit.
-  constexpr double kDeviations = 2;
   constexpr double kFurthestOff_m = 1500;
-  return lethal_range_m + std::min(kDeviations * deviation_m, kFurthestOff_m);
+  return lethal_range_m + std::min(kPlacedWithin * deviation_m, kFurthestOff_m);
+}
+
+double certain_reach_m(double lethal_range_m, double deviation_m) {
+  return std::max(lethal_range_m - kPlacedWithin * deviation_m, 0.0);
 }
 
 double hazard_of_leg(const Local& from, const Local& to, std::span<const ThreatDisc> discs,

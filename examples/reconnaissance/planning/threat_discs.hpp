@@ -21,6 +21,8 @@ inline constexpr double kKills_per_s = 0.02;
 
 /// As far as a weapon may reach whose site is known but for that deviation in the worst direction.
 double reach_m(double lethal_range_m, double deviation_m);
+/// As far as it reaches in any case.
+double certain_reach_m(double lethal_range_m, double deviation_m);
 
 /// ∫ λ dt of a straight flight over all discs that it crosses.
 double hazard_of_leg(const Local& from, const Local& to, std::span<const ThreatDisc> discs,

@@ -107,6 +107,11 @@ TEST_CASE("two weapons at one place are kept away from as well as one") {
   CHECK(kept(outcome, "survival"));
 }
 
+TEST_CASE("a way along the edge of what a weapon reaches leaves room for how turns are flown") {
+  CHECK(passed("surveillance", 334, 334) == 1);
+  CHECK(passed("suppression", 337, 337) == 1);
+}
+
 TEST_CASE("other aircraft are avoided out of weapons' reach") {
   std::string intruders;
   for (int minute = 2; minute <= 20; ++minute)
@@ -147,7 +152,10 @@ TEST_CASE("among twelve sites a mission keeps its limits, is declined, or turns 
     }
     for (const char* condition : {"flown to its end", "duration", "clearance", "landing", "fuel"})
       CHECK(kept(outcome, condition));
-    if (!kept(outcome, "survival")) CHECK_THAT(outcome.reason(), Catch::Contains("it flew home"));
+    // What weapons come alive around home when it is nearly there, nothing helps against.
+    if (!kept(outcome, "survival"))
+      CHECK_THAT(outcome.log, Catch::Contains("Egress: a weapon guides") ||
+                                  Catch::Contains("a threat bars the way"));
   }
 }
 

@@ -22,7 +22,7 @@ const std::filesystem::path kMission =
 /// One element of interest, near the runway; an intruder comes soon.
 const std::vector<std::string> kShort{"--variable", "elements=shed 1 5 0.3 20 53.3089 27.3225",
                                       "--variable", "objects=53.3089 27.3226 3 0 0",
-                                      "--variable", "intruders=70 30 7000 60",
+                                      "--variable", "intruders=270 30 7000 60",
                                       "--variable", "failures=2 wrong 40 300",
                                       "--variable", "planner_failures=2 killed"};
 
