@@ -113,10 +113,15 @@ class DynamicPublisher {
 class DynamicSubscription {
  public:
   using Callback = std::function<void(const std::string& json)>;
+  /// Gets the value as CDR with its encapsulation header, as `known` describes the type.
+  using CdrCallback = std::function<void(std::span<const std::byte> cdr)>;
 
   /// As DynamicPublisher(); the callback is that of a Subscription.
   DynamicSubscription(Entity& entity, const std::string& topic, const std::string& type,
                       const types::TypeSystem& known, const TopicQos& qos, Callback callback,
+                      SubscriptionOptions options = {});
+  DynamicSubscription(Entity& entity, const std::string& topic, const std::string& type,
+                      const types::TypeSystem& known, const TopicQos& qos, CdrCallback callback,
                       SubscriptionOptions options = {});
 
   std::size_t publishers() const { return topics::held(reader_).publishers(); }

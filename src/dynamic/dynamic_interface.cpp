@@ -33,7 +33,9 @@ std::uint32_t name_hash(const std::string& name) {
 [[noreturn]] void raise(const void* value) {
   const auto& thrown = *static_cast<const idl::DynamicValue*>(value);
   const auto& support = static_cast<const DynamicExceptionSupport&>(*thrown.support);
-  throw DynamicException(support.info, std::make_shared<idl::DynamicValue>(thrown), thrown.json);
+  auto kept = std::make_shared<idl::DynamicValue>(thrown);
+  idl::own(*kept);
+  throw DynamicException(support.info, kept, idl::json_of(thrown));
 }
 
 /// An interface with its bases, by name, each once; those that are not described are left out.
@@ -48,12 +50,13 @@ void for_each_interface(const types::TypeSystem& types, const std::string& name,
 
 }  // namespace
 
-DynamicExceptionSupport::DynamicExceptionSupport(const idl::DynamicType& described)
-    : DynamicSupport(described), info{name, name_hash(std::string(name)), this, raise} {}
+DynamicExceptionSupport::DynamicExceptionSupport(const idl::DynamicType& described,
+                                                 idl::DynamicForm held)
+    : DynamicSupport(described, held), info{name, name_hash(std::string(name)), this, raise} {}
 
 DynamicInterface::DynamicInterface(const discovery::ServiceDescription& service,
-                                   types::TypeSystem known)
-    : name_(canonical_interface_name(service.service)), types_(std::move(known)) {
+                                   types::TypeSystem known, idl::DynamicForm form)
+    : name_(canonical_interface_name(service.service)), form_(form), types_(std::move(known)) {
   std::set<std::string> seen;
   const auto& described = types_.described();
   for_each_interface(described, scoped_interface_name(name_), seen,
@@ -67,6 +70,27 @@ DynamicInterface::DynamicInterface(const discovery::ServiceDescription& service,
   info_.name = name_;
   info_.operations = operations_;
   info_.growing = growing_;
+  info_.description = description_of(name_);
+  add_bases(service);
+}
+
+void DynamicInterface::add_bases(const discovery::ServiceDescription& service) {
+  for (const std::string& name : service.bases) {
+    Base& base = bases_.emplace_back(Base{canonical_interface_name(name)});
+    base.info.name = base.name;
+    base.info.description = description_of(base.name);
+    base_infos_.push_back(&base.info);
+  }
+  info_.bases = base_infos_;
+}
+
+std::string_view DynamicInterface::description_of(const std::string& canonical) {
+  const auto& all = types_.described().interfaces;
+  const auto found =
+      std::ranges::find(all, scoped_interface_name(canonical), &types::Interface::name);
+  if (found == all.end()) return {};
+  const Bytes& cdr = descriptions_.emplace_back(idl::encode_message(*found));
+  return {reinterpret_cast<const char*>(cdr.data()), cdr.size()};
 }
 
 void DynamicInterface::add_operations(const types::Interface& interface,
@@ -83,9 +107,9 @@ void DynamicInterface::add_operation(const types::Interface& interface,
                                      const discovery::OperationDigest& digest) {
   const std::string place = scoped_interface_name(name_) + "::" + described.name;
   auto& in = supports_.emplace_back(
-      types_.add_struct(place, idl::in_struct(interface, described).members));
+      types_.add_struct(place, idl::in_struct(interface, described).members), form_);
   auto& out = supports_.emplace_back(
-      types_.add_struct(place + " (result)", idl::out_struct(interface, described).members));
+      types_.add_struct(place + " (result)", idl::out_struct(interface, described).members), form_);
   auto& raised = raises_.emplace_back();
   for (const std::string& name : described.raises) raised.push_back(exception(name));
   operations_.push_back({described.name, digest.hash, digest.signature,
@@ -104,7 +128,17 @@ const ExceptionInfo* DynamicInterface::exception(const std::string& name) {
   if (!type.is(types::DeclarationKind::Exception)) {
     throw InvalidArgument("'" + name + "' is raised, but described as no exception");
   }
-  return &exceptions_.emplace_back(type).info;
+  return &exceptions_.emplace_back(type, form_).info;
+}
+
+const ExceptionInfo& DynamicInterface::raised(const std::string& name) const {
+  std::vector<std::string> known;
+  for (const DynamicExceptionSupport& each : exceptions_) {
+    if (each.name == name) return each.info;
+    known.emplace_back(each.name);
+  }
+  throw InvalidArgument(scoped_interface_name(name_) + " raises no exception '" + name + "'" +
+                        suggestion(name, known));
 }
 
 std::vector<std::string> DynamicInterface::names() const {
@@ -127,7 +161,7 @@ const types::Operation& DynamicInterface::described(const std::string& name) con
 }
 
 const DynamicInterface& dynamic_interface(const discovery::ServiceDescription& service,
-                                          types::TypeSystem known) {
+                                          types::TypeSystem known, idl::DynamicForm form) {
   static std::mutex mutex;
   // Never destroyed: connections may outlive main().
   static auto& interfaces = *new std::map<std::string, std::unique_ptr<DynamicInterface>>;
@@ -135,13 +169,15 @@ const DynamicInterface& dynamic_interface(const discovery::ServiceDescription& s
   version.service = service.service;
   version.operations = service.operations;
   version.growing = service.growing;
+  version.bases = service.bases;
   const Bytes told = idl::encode_message(version);
   const Bytes types = idl::encode_message(known);
-  std::string key(reinterpret_cast<const char*>(told.data()), told.size());
+  std::string key(1, static_cast<char>(form));
+  key.append(reinterpret_cast<const char*>(told.data()), told.size());
   key.append(reinterpret_cast<const char*>(types.data()), types.size());
   std::lock_guard lock(mutex);
   auto& interface = interfaces[key];
-  if (!interface) interface = std::make_unique<DynamicInterface>(service, std::move(known));
+  if (!interface) interface = std::make_unique<DynamicInterface>(service, std::move(known), form);
   return *interface;
 }
 

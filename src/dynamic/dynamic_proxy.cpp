@@ -8,22 +8,13 @@
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
 #include "skein/inspector.hpp"
+#include "value_proxy.hpp"
 
 namespace skein {
 namespace {
 
 using idl::DynamicSupport;
 using idl::DynamicValue;
-
-DynamicValue new_value(const TypeSupport& support) {
-  return {&static_cast<const DynamicSupport&>(support), "{}"};
-}
-
-struct DynamicCall final : PendingCall {
-  DynamicCall(const OperationInfo& operation, Instant deadline)
-      : PendingCall(operation, &value, deadline, false), value(new_value(*operation.out)) {}
-  DynamicValue value;
-};
 
 /// Whether the text is an object with the parameters' names, or the one parameter's value. An
 /// object that cannot be the value has a wrong name.
@@ -33,16 +24,6 @@ bool names_parameters(const std::string& arguments, const idl::DynamicType::Memb
     named = json.has_member(only.described->name) || (json.is_object() && !only.type->is_object());
   });
   return named;
-}
-
-DynamicValue arguments_of(const OperationInfo& operation, const std::string& arguments) {
-  DynamicValue value = new_value(*operation.in);
-  const auto& parameters = value.support->type.members;
-  if (!arguments.empty() || !parameters.empty()) value.json = arguments;
-  if (parameters.size() == 1 && !names_parameters(arguments, parameters[0])) {
-    value.json = "{\"" + parameters[0].described->name + "\":" + arguments + "}";
-  }
-  return value;
 }
 
 /// The provider that a connection would be made to now.
@@ -58,6 +39,19 @@ brokerless_discovery::Table::Found providers_of(Entity& entity, const ConnectOpt
 }
 
 }  // namespace
+
+DynamicValue arguments_of(const OperationInfo& operation, const std::string& arguments) {
+  DynamicValue value{DynamicSupport::of(*operation.in)};
+  const auto& parameters = value.support->type.members;
+  if (arguments.empty()) {
+    value.json = parameters.empty() ? "{}" : " ";  // which is no JSON
+  } else if (parameters.size() == 1 && !names_parameters(arguments, parameters[0])) {
+    value.json = "{\"" + parameters[0].described->name + "\":" + arguments + "}";
+  } else {
+    value.json = arguments;
+  }
+  return value;
+}
 
 DynamicException::DynamicException(const ExceptionInfo& info, std::shared_ptr<const void> value,
                                    std::string json)
@@ -102,31 +96,33 @@ const OperationInfo& DynamicProxy::find(const std::string& operation, bool strea
 
 std::string DynamicProxy::call(const std::string& operation, const std::string& arguments) const {
   const OperationInfo& found = find(operation, false);
-  const DynamicValue in = arguments_of(found, arguments);
-  DynamicValue out = new_value(*found.out);
-  connection().call(found, &in, &out, call_time());
-  return std::move(out.json);
+  return ValueProxy(*this).call(found, arguments_of(found, arguments)).json;
 }
 
 Call<std::string> DynamicProxy::async_call(const std::string& operation,
                                            const std::string& arguments) const {
   const OperationInfo& found = find(operation, false);
-  const DynamicValue in = arguments_of(found, arguments);
-  auto pending = std::make_shared<DynamicCall>(found, call_time().deadline);
+  auto pending = ValueProxy(*this).start(found, arguments_of(found, arguments));
   auto* const result = &pending->value.json;
-  connection().start(pending, &in);
   return {std::move(pending), channel(), result};
 }
 
 Stream<std::string> DynamicProxy::stream(const std::string& operation,
                                          const std::string& arguments) const {
   const OperationInfo& found = find(operation, true);
-  const DynamicValue in = arguments_of(found, arguments);
-  auto pending = std::make_shared<PendingStream>(found, call_time().deadline);
-  connection().start(pending, &in);
-  return Stream<std::string>(std::move(pending), channel(), [](void* out) {
-    return std::move(static_cast<DynamicValue*>(out)->json);
-  });
+  return Stream<std::string>(
+      ValueProxy(*this).stream(found, arguments_of(found, arguments)), channel(),
+      [](void* out) { return std::move(static_cast<DynamicValue*>(out)->json); });
+}
+
+ToldInterface ask_for_interface(Entity& entity, const ConnectOptions& options) {
+  const Instant deadline = entity.clock().after(options.timeout);
+  const auto providers = providers_of(entity, options, deadline);
+  const discovery::ServiceDescription& provider = *providers.front();
+  const auto participant = entity.broker().participant_of({provider.provider});
+  if (!participant) throw Unavailable(provider.entity + " left before it was connected");
+  const Duration left = std::max(Duration::zero(), deadline - entity.clock().now());
+  return {provider, Inspector(entity).types(provider.service, *participant, left)};
 }
 
 DynamicProxy connect_dynamic(Entity& entity, const ConnectOptions& options) {
@@ -134,15 +130,10 @@ DynamicProxy connect_dynamic(Entity& entity, const ConnectOptions& options) {
     throw InvalidArgument("connect_dynamic() needs a name, of an interface or an entity");
   }
   const Instant deadline = entity.clock().after(options.timeout);
-  const auto providers = providers_of(entity, options, deadline);
-  const discovery::ServiceDescription& provider = *providers.front();
-  const auto left = [&] { return std::max(Duration::zero(), deadline - entity.clock().now()); };
-  const auto participant = entity.broker().participant_of({provider.provider});
-  if (!participant) throw Unavailable(provider.entity + " left before it was connected");
-  const DynamicInterface& interface =
-      dynamic_interface(provider, Inspector(entity).types(provider.service, *participant, left()));
+  const ToldInterface told = ask_for_interface(entity, options);
+  const DynamicInterface& interface = dynamic_interface(told.service, told.types);
   ConnectOptions wanted = options;
-  wanted.timeout = std::max(left(), Duration(1));  // at its end it fails as it does elsewhere
+  wanted.timeout = std::max(deadline - entity.clock().now(), Duration(1));  // fails as elsewhere
   return {entity.connector().open(interface.info(), wanted), interface};
 }
 

@@ -19,15 +19,15 @@ using idl::DynamicValue;
 Guid key_of(const void* value) {
   const auto& dynamic = *static_cast<const DynamicValue*>(value);
   Guid key;
-  idl::parse_json(dynamic.json, [&](const idl::JsonReader& json) {
+  idl::parse_json(idl::json_of(dynamic), [&](const idl::JsonReader& json) {
     key = idl::key_hash_of(json, dynamic.support->type);
   });
   return key;
 }
 
 struct DynamicTopicType {
-  DynamicTopicType(const std::string& name, const types::TypeSystem& known)
-      : types(known), support(checked(types.type(name))) {}
+  DynamicTopicType(const std::string& name, const types::TypeSystem& known, idl::DynamicForm form)
+      : types(known), support(checked(types.type(name)), form) {}
 
   static const idl::DynamicType& checked(const idl::DynamicType& type) {
     if (type.is_struct() || type.is(types::DeclarationKind::Union)) return type;
@@ -42,15 +42,16 @@ struct DynamicTopicType {
 };
 
 /// Made once and kept until the process ends: vendors' threads may decode until then.
-const topics::TopicType& topic_type(const std::string& name, const types::TypeSystem& known) {
+const topics::TopicType& topic_type(const std::string& name, const types::TypeSystem& known,
+                                    idl::DynamicForm form = idl::DynamicForm::Json) {
   static std::mutex mutex;
   static auto& made = *new std::map<std::string, std::unique_ptr<DynamicTopicType>>;
   const Bytes types = idl::encode_message(known);
-  std::string key = name + '\n';
+  std::string key = name + (form == idl::DynamicForm::Json ? "\n" : "\r");
   key.append(reinterpret_cast<const char*>(types.data()), types.size());
   std::lock_guard lock(mutex);
   auto& type = made[key];
-  if (!type) type = std::make_unique<DynamicTopicType>(name, known);
+  if (!type) type = std::make_unique<DynamicTopicType>(name, known, form);
   return type->type;
 }
 
@@ -89,6 +90,18 @@ DynamicSubscription::DynamicSubscription(Entity& entity, const std::string& topi
           entity.qos_of(topic, qos),
           [callback = std::move(callback)](const void* value) {
             callback(static_cast<const DynamicValue*>(value)->json);
+          },
+          std::move(options), &entity.topic_register())) {}
+
+DynamicSubscription::DynamicSubscription(Entity& entity, const std::string& topic,
+                                         const std::string& type, const types::TypeSystem& known,
+                                         const TopicQos& qos, CdrCallback callback,
+                                         SubscriptionOptions options)
+    : reader_(std::make_unique<topics::TopicReader>(
+          entity.participant(), entity.topic_executor(), topic,
+          topic_type(type, known, idl::DynamicForm::Cdr), entity.qos_of(topic, qos),
+          [callback = std::move(callback)](const void* value) {
+            callback(static_cast<const DynamicValue*>(value)->cdr);
           },
           std::move(options), &entity.topic_register())) {}
 

@@ -124,6 +124,29 @@ void check_initial(const skein::TypeSupport& support, const skein::idl::DynamicT
   std::cout << support.name << " begins with\n  " << json << "\n  " << again << "\n";
 }
 
+/// A value that is held as CDR is the same value, in this version of the type.
+inline void check_copy(const skein::idl::DynamicType& type, const skein::Bytes& message,
+                       const std::optional<Read>& expected) {
+  const skein::idl::DynamicSupport support(type, skein::idl::DynamicForm::Cdr);
+  skein::idl::DynamicValue value{&support};
+  std::optional<Read> found;
+  try {
+    Read read;
+    read.end = support.decode(&value, message, 4);
+    read.json = skein::idl::json_of(value);
+    read.again = expected ? expected->again : read.again;
+    if (!read.again.empty()) read.again = written(support, &value);
+    read.key = expected ? expected->key : read.key;
+    found = read;
+  } catch (const skein::InvalidArgument&) {
+  }
+  ++compared;
+  if (expected == found || ++failures > 20) return;
+  std::cout << support.name << " is copied as\n  "
+            << (found ? found->json.substr(0, 2000) : "refused") << "\nnot as\n  "
+            << (expected ? expected->json.substr(0, 2000) : "refused") << "\n";
+}
+
 template <class T>
 void check_dynamic(const skein::idl::DynamicTypes& types) {
   const skein::TypeSupport& support = skein::idl::type_support<T>();
@@ -141,6 +164,7 @@ void check_dynamic(const skein::idl::DynamicTypes& types) {
     const skein::Bytes message = message_for<T>(support, random, round);
     const auto expected = read_generated<T>(support, message);
     const auto found = read_dynamic(dynamic, message);
+    check_copy(dynamic.type, message, expected);
     ++compared;
     if (expected == found) continue;
     if (++failures > 20) continue;

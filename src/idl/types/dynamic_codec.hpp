@@ -17,6 +17,11 @@ void encode_dynamic(CdrWriter& writer, const JsonReader& json, const DynamicType
 /// Throws MalformedSample for what is no such value.
 void decode_dynamic(CdrReader& reader, JsonWriter& json, const DynamicType& type);
 
+/// Reads a value and writes it again, as the message that it is written to requires: with other
+/// alignment, in this side's version of a type that may grow. Throws MalformedSample for what is no
+/// such value.
+void copy_dynamic(CdrReader& reader, CdrWriter& writer, const DynamicType& type);
+
 /// The JSON of a new value: what decode_dynamic() takes for members that the writer does not have.
 std::string initial_json(const DynamicType& type);
 

@@ -202,6 +202,7 @@ DynamicTypes::DynamicTypes(types::TypeSystem described) : described_(std::move(d
   for (const Declaration& declaration : described_.declarations) {
     DynamicType& type = types_.emplace_back();
     type.declaration = &declaration;
+    type.system = &described_;
     demand(declared_.emplace(declaration.name, &type).second, declaration.name,
            "it is declared twice");
   }
@@ -227,6 +228,7 @@ const DynamicType& DynamicTypes::add_struct(const std::string& name,
   declaration.members = std::move(members);
   DynamicType& type = types_.emplace_back();
   type.declaration = &declaration;
+  type.system = &described_;
   complete(type, declaration);
   choose_representation(type);
   return type;

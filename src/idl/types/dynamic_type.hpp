@@ -33,6 +33,7 @@ struct DynamicType {
   std::vector<std::string_view> names{};  ///< Of members, enumerators, or fields that have one.
   std::vector<Flag> flags{};              ///< Of a bitmask.
   Representation representation = Representation::Xcdr1;
+  const types::TypeSystem* system = nullptr;  ///< Of Kind::Declared: which declares it.
 
   bool is(types::DeclarationKind wanted) const {
     return declaration != nullptr && declaration->kind == wanted;

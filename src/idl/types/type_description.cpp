@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "dynamic_support.hpp"
 #include "skein/describe.hpp"
 #include "skein/detail/codec.hpp"
 
@@ -15,7 +16,17 @@ bool is_known(const auto& declared, const std::string& name) {
   return std::ranges::any_of(declared, [&](const auto& one) { return one.name == name; });
 }
 
+void add(const types::TypeSystem& described, types::TypeSystem& known) {
+  for (const types::Declaration& each : described.declarations) {
+    if (!is_known(known.declarations, each.name)) known.declarations.push_back(each);
+  }
+  for (const types::Interface& each : described.interfaces) {
+    if (!is_known(known.interfaces, each.name)) known.interfaces.push_back(each);
+  }
+}
+
 void add(const TypeSupport& type, types::TypeSystem& known) {
+  if (const auto* dynamic = idl::DynamicSupport::of(type)) return add(*dynamic->type.system, known);
   if (!type.description.declaration.empty()) {
     if (is_known(known.declarations, std::string(type.name))) return;
     known.declarations.push_back(read<types::Declaration>(type.description.declaration));
@@ -24,6 +35,7 @@ void add(const TypeSupport& type, types::TypeSystem& known) {
 }
 
 void add(const InterfaceInfo& interface, types::TypeSystem& known) {
+  if (interface.description.empty()) return;  // a base of which nothing was told
   auto description = read<types::Interface>(interface.description);
   if (is_known(known.interfaces, description.name)) return;
   known.interfaces.push_back(std::move(description));
