@@ -112,6 +112,8 @@ class PublicHeaders(TreeTest):
         for folder, headers in (("", include_rules.USERS_HEADERS), ("detail/", include_rules.DETAIL_HEADERS)):
             for name in " ".join(headers.values()).split():
                 self.write(f"include/skein/{folder}{name}.hpp", "")
+        for name in include_rules.C_HEADERS:
+            self.write(f"include/skein/c/{name}.h", "")
         self.names = " ".join(include_rules.USERS_HEADERS.values()).split()
         self.write_umbrella(self.names)
 

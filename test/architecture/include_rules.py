@@ -61,11 +61,14 @@ _FLOOR_OF_HEADER = {
     for floor, names in headers.items()
     for name in names.split()
 }
+# For C and all languages that call it: skein/c/NAME.h.
+C_HEADERS = ("skein",)
+_FLOOR_OF_HEADER |= {f"skein/c/{name}.h": "languages/c" for name in C_HEADERS}
 # Neighbours on one floor do not know each other, but for these.
 NEIGHBOURS = {("mission/profile", "mission/component")}
 # Headers that are generated, by the floor of their IDL; all of idl/navigation are of `navigation`.
 GENERATED = {"skein/types.idl.hpp": "idl", "skein/discovery.idl.hpp": "brokerless_discovery", "skein/introspection.idl.hpp": "rpc/wire",
-             "skein/inspection.idl.hpp": "entity", "skein/mission_status.idl.hpp": "mission/process", "skein/live_parameters.idl.hpp": "mission/process"}
+             "skein/inspection.idl.hpp": "entity", "skein/interface_description.idl.hpp": "languages/c", "skein/mission_status.idl.hpp": "mission/process", "skein/live_parameters.idl.hpp": "mission/process"}
 
 # Whose headers are welcome in which folders alone. Peers and rivals without Skein, and tests that look at the vendors from
 # outside, are built on the vendors' own headers.
@@ -127,7 +130,7 @@ def precompiled_headers(tree):
 
 def public_headers(tree):
     """A header that is installed and not named above, and one that skein.hpp lacks."""
-    headers = {path.removeprefix("include/") for path in tree.files((".hpp",), "include")}
+    headers = {path.removeprefix("include/") for path in tree.files((".hpp", ".h"), "include")}
     for header in sorted(headers - set(_FLOOR_OF_HEADER)):
         yield f"include/{header}: is nowhere in USERS_HEADERS or DETAIL_HEADERS; internals lie beside their sources"
     for header in sorted(set(_FLOOR_OF_HEADER) - headers):

@@ -1,0 +1,294 @@
+/* Skein for C, and for every language that can call C. C99.
+ *
+ * There are three shapes only.
+ *  - Handles: small structs, passed by value, which name an object. 0 names none. A handle that was
+ *    never made, was freed before, or names an object of another kind is an error of the class
+ *    SKEIN_INVALID_ARGUMENT with a sentence; never undefined behaviour, whichever thread uses it.
+ * An object that a running function uses lives until that function returns.
+ *  - Values: structs without ownership. Pointers in arguments are read during the call alone. Of
+ *    pointers that a function or a callback gives, it says how long they hold.
+ *  - Callbacks: a struct of functions with a `user` pointer, which every one of them gets.
+ *    `on_close` may be NULL; it is called once, after the last of the others has returned and when
+ *    none will follow, if the function that took the callbacks returned true, and otherwise never.
+ *    Callbacks run on Skein's threads. None runs under a lock of Skein's, so each may call Skein.
+ *    What they throw (C++) ends the process.
+ *
+ * Errors. A function returns whether it has succeeded; results come by pointers (`out`, `value`,
+ * …), which are written on success alone, and may not be NULL unless that is said. The last
+ * argument is where an error goes: skein_error_new() makes one for each thread that calls; 0
+ * ignores errors.
+ *
+ * Times are nanoseconds (`_ns`). Texts are UTF-8 and end with a zero. All functions are
+ * thread-safe.
+ */
+#ifndef SKEIN_C_SKEIN_H
+#define SKEIN_C_SKEIN_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define SKEIN_MILLISECOND INT64_C(1000000)
+#define SKEIN_SECOND INT64_C(1000000000)
+
+/* ---- handles ---- */
+
+typedef struct skein_error {
+  uint64_t id;
+} skein_error;
+typedef struct skein_result {
+  uint64_t id;
+} skein_result;
+typedef struct skein_entity {
+  uint64_t id;
+} skein_entity;
+typedef struct skein_interface {
+  uint64_t id;
+} skein_interface;
+typedef struct skein_proxy {
+  uint64_t id;
+} skein_proxy;
+typedef struct skein_call {
+  uint64_t id;
+} skein_call;
+typedef struct skein_stream {
+  uint64_t id;
+} skein_stream;
+typedef struct skein_provider {
+  uint64_t id;
+} skein_provider;
+typedef struct skein_reply {
+  uint64_t id;
+} skein_reply;
+typedef struct skein_publisher {
+  uint64_t id;
+} skein_publisher;
+typedef struct skein_subscription {
+  uint64_t id;
+} skein_subscription;
+
+/* ---- errors ---- */
+
+/* Classes of failure, by what the caller can do next. */
+typedef int32_t skein_error_kind;
+enum {
+  SKEIN_OK = 0,
+  SKEIN_UNAVAILABLE = 1,      /* Not executed: no provider is available. Try later or elsewhere. */
+  SKEIN_OVERLOADED = 2,       /* Not executed: a queue is full. Back off, then try again. */
+  SKEIN_DISCONNECTED = 3,     /* The provider died or left; whether the call ran is unknown. */
+  SKEIN_TIMED_OUT = 4,        /* The deadline passed; whether the call ran is unknown. */
+  SKEIN_CANCELLED = 5,        /* The caller gave up; whether the call ran is unknown. */
+  SKEIN_UNIMPLEMENTED = 6,    /* The provider does not know the operation or this version of it. */
+  SKEIN_INVALID_ARGUMENT = 7, /* The input is invalid; the same input will fail again. */
+  SKEIN_INTERNAL = 8,         /* A failure that the interface does not declare. */
+  SKEIN_DECLARED = 9 /* An exception that the interface declares: skein_error_exception(). */
+};
+
+/* How a value is written. */
+typedef int32_t skein_encoding;
+enum {
+  SKEIN_JSON = 0,  /* Text; values that Skein gives end with a zero behind their size. */
+  SKEIN_CDR = 1,   /* XCDR1 or XCDR2 with its encapsulation header, of either byte order. */
+  SKEIN_STRUCT = 2 /* The C struct that the IDL compiler declares, by its address and sizeof. */
+};
+
+/* A value of an IDL type. Arguments of a call are a struct of its in and inout parameters, a result
+ * one of `return_`, if there is one, and its out and inout parameters, in this order. In JSON that
+ * is an object; a single argument may be given alone. NULL and 0: no arguments, or no result. */
+typedef struct skein_value {
+  const void* data;
+  size_t size;
+  skein_encoding encoding;
+} skein_value;
+
+static inline skein_value skein_json(const char* text) {
+  skein_value value = {text, text ? strlen(text) : 0, SKEIN_JSON};
+  return value;
+}
+
+static inline skein_value skein_struct(const void* data, size_t size) {
+  skein_value value = {data, size, SKEIN_STRUCT};
+  return value;
+}
+
+static inline skein_value skein_cdr(const void* data, size_t size) {
+  skein_value value = {data, size, SKEIN_CDR};
+  return value;
+}
+
+/* A service as a value: what an IDL type has where it names an interface. */
+typedef struct skein_reference {
+  const char* interface_name;
+  uint8_t provider[16]; /* All 0: no service. */
+  const char* instance;
+} skein_reference;
+
+/* A place for errors; 0 if memory is exhausted. It keeps the last error that was put there until it
+ * is cleared: success leaves it as it is. What the following functions give holds until the next
+ * error comes, or the error is cleared or freed; so let one thread at a time use it. */
+skein_error skein_error_new(void);
+bool skein_error_free(skein_error error);
+/* SKEIN_OK if there is none. */
+skein_error_kind skein_error_class(skein_error error);
+/* Cause, place and remedy; "" if there is none. */
+const char* skein_error_text(skein_error error);
+/* Of an exception that the interface declares: its scoped IDL name and its members, as the call
+ * that failed was encoded, but CDR in place of a struct. Returns false for every other error. */
+bool skein_error_exception(skein_error error, const char** name, skein_value* members);
+bool skein_error_clear(skein_error error);
+/* Puts an error there: how a callback gives its reason. NULL is "". */
+bool skein_error_set(skein_error error, skein_error_kind kind, const char* text);
+
+/* ---- results ---- */
+
+/* The value, which holds until the result is freed. */
+bool skein_result_value(skein_result result, skein_value* value, skein_error error);
+/* 0 is no error, as in all `_free` functions. */
+bool skein_result_free(skein_result result, skein_error error);
+
+/* ---- entities ---- */
+
+/* Members that are 0 or NULL have their defaults. `reserved` must be 0. */
+typedef struct skein_entity_options {
+  const char* name;   /* Required: letters, digits, `_`, `-` and `.`; the same for `system`. */
+  const char* system; /* The vehicle or station; default: `default`. */
+  const char* vendor; /* Required: `cyclonedds`, `fastdds` or, within the process, `loopback`. */
+  const char* const* network; /* `network_size` interfaces or IPv4 addresses; default: 127.0.0.1. */
+  size_t network_size;
+  const char* const* peers; /* `peers_size` hosts on which to look for participants. */
+  size_t peers_size;
+  uint32_t domain;             /* 0 to 232. */
+  bool multicast;              /* Discover participants by multicast, on a named interface. */
+  bool no_shared_memory_calls; /* Calls on this host go over DDS, too. */
+  int64_t lease_ns;            /* A peer that is silent for so long is lost; default: 1 s. */
+  uint64_t reserved[4];
+} skein_entity_options;
+
+/* Joins the mission: an autonomous entity with one DDS participant. */
+bool skein_entity_new(const skein_entity_options* options, skein_entity* out, skein_error error);
+/* Leaves the mission: ends its publishers and subscriptions, withdraws its services, and ends all
+ * connections; pending calls end as SKEIN_DISCONNECTED. Proxies and calls may outlive it. Waits for
+ * running functions that use the entity, for running callbacks of subscriptions, and at most 2 s
+ * for calls that hang. Refused in a callback of this entity. */
+bool skein_entity_free(skein_entity entity, skein_error error);
+/* `system/name`; holds until the entity is freed. */
+bool skein_entity_id(skein_entity entity, const char** out, skein_error error);
+/* Withdraws all services without loss: tells clients to go elsewhere, and serves what they had
+ * sent. `drained` (may be NULL) is false if that took longer than `patience_ns`. Waits. Refused in
+ * a callback of this entity. */
+bool skein_entity_drain(skein_entity entity, int64_t patience_ns, bool* drained, skein_error error);
+
+/* ---- interfaces ---- */
+
+/* What a program knows of an IDL interface: its operations and their types; or of types alone. Made
+ * of a description that the IDL compiler writes for C. The bytes are copied. */
+bool skein_interface_new(const void* description, size_t size, skein_interface* out,
+                         skein_error error);
+/* Asks a service that runs now; `name` is of an interface or an entity. Waits until there is one,
+ * at most `timeout_ns`; 0: 5 s. */
+bool skein_interface_fetch(skein_entity entity, const char* name, int64_t timeout_ns,
+                           skein_interface* out, skein_error error);
+/* Canonical name, `AE_navigator/INavigator`; holds until the interface is freed. */
+bool skein_interface_name(skein_interface interface, const char** out, skein_error error);
+/* The description: as CDR what skein_interface_new() takes; as JSON for people and generators. */
+bool skein_interface_describe(skein_interface interface, skein_encoding encoding, skein_result* out,
+                              skein_error error);
+/* Arguments that the operation takes, as JSON, all with their initial values. */
+bool skein_interface_example(skein_interface interface, const char* operation, skein_result* out,
+                             skein_error error);
+/* A value of one of the interface's types, or of an operation's arguments (`wind`) or results
+ * (`wind.out`), in another encoding. */
+bool skein_interface_convert(skein_interface interface, const char* type, skein_value value,
+                             skein_encoding encoding, skein_result* out, skein_error error);
+bool skein_interface_free(skein_interface interface, skein_error error);
+
+/* ---- calls ---- */
+
+typedef int32_t skein_relation;
+enum { SKEIN_EQUAL = 0, SKEIN_NOT_EQUAL = 1, SKEIN_AT_MOST = 2, SKEIN_AT_LEAST = 3 };
+
+/* A condition on an attribute that providers declare: `latency` AT_MOST `300`. */
+typedef struct skein_constraint {
+  const char* attribute;
+  const char* value;
+  skein_relation relation;
+} skein_constraint;
+
+/* Which provider to connect to. Members that are 0 or NULL have their defaults. */
+typedef struct skein_connect_options {
+  const char* name;     /* Of an interface or an entity; default: the interface. */
+  const char* system;   /* Another vehicle or station, `*` for any; default: the entity's own. */
+  const char* strategy; /* Of the provider's Head for this session. */
+  const char* preferred_host; /* `.` for this host. */
+  const uint8_t* provider;    /* 16 bytes: only this provider. */
+  const skein_constraint* constraints;
+  size_t constraints_size;
+  int64_t timeout_ns;     /* To find a provider and connect; default: 5 s. */
+  int64_t hedge_after_ns; /* Idempotent calls without an answer are then made elsewhere, too. */
+  uint64_t reserved[4];
+} skein_connect_options;
+
+/* Connects to a provider of the interface; each later call goes to the current one, or to another
+ * if that is lost. `options` may be NULL. Waits. */
+bool skein_proxy_connect(skein_entity entity, skein_interface interface,
+                         const skein_connect_options* options, skein_proxy* out, skein_error error);
+/* Whether calls can be made. */
+bool skein_proxy_connected(skein_proxy proxy, bool* out, skein_error error);
+/* Ends the connection: pending calls end as SKEIN_CANCELLED. */
+bool skein_proxy_free(skein_proxy proxy, skein_error error);
+
+/* Calls an operation and waits for its result, at most `timeout_ns`; 0: 5 s. The result is encoded
+ * as the arguments are. `out` may be NULL. */
+bool skein_proxy_call(skein_proxy proxy, const char* operation, skein_value arguments,
+                      int64_t timeout_ns, skein_result* out, skein_error error);
+
+/* `result` is NULL if the call has failed; then `error` says why. Both hold during the call of
+ * `on_result` alone. It runs on the entity's thread for continuations: one that takes long holds up
+ * the others. */
+typedef struct skein_call_callbacks {
+  void* user;
+  void (*on_result)(void* user, const skein_value* result, skein_error error);
+  void (*on_close)(void* user);
+} skein_call_callbacks;
+
+/* Begins a call, and returns at once. With callbacks its end is told; without (NULL), wait for it.
+ * `out` may be NULL with callbacks. The arguments are read before this returns. */
+bool skein_proxy_start(skein_proxy proxy, const char* operation, skein_value arguments,
+                       int64_t timeout_ns, const skein_call_callbacks* callbacks, skein_call* out,
+                       skein_error error);
+/* Waits for the end of a call without callbacks, once. `out` may be NULL. */
+bool skein_call_wait(skein_call call, skein_result* out, skein_error error);
+/* Cancels the call, unless it has ended: it ends as SKEIN_CANCELLED. */
+bool skein_call_cancel(skein_call call, skein_error error);
+/* Cancels the call, unless it has ended. Allowed in its own callback. */
+bool skein_call_free(skein_call call, skein_error error);
+
+/* `item` is NULL at the end of the stream; then `error` is 0, or says what ended it. Both hold
+ * during the call of `on_item` alone, which runs as on_result(). A slow one slows the provider. */
+typedef struct skein_stream_callbacks {
+  void* user;
+  void (*on_item)(void* user, const skein_value* item, skein_error error);
+  void (*on_close)(void* user);
+} skein_stream_callbacks;
+
+/* Calls an operation that returns a stream. The timeout is that of the whole stream. With callbacks
+ * its results are told; without (NULL), take them by skein_stream_next(). */
+bool skein_proxy_stream(skein_proxy proxy, const char* operation, skein_value arguments,
+                        int64_t timeout_ns, const skein_stream_callbacks* callbacks,
+                        skein_stream* out, skein_error error);
+/* Waits for the next result of a stream without callbacks; at the end `*out` is 0. */
+bool skein_stream_next(skein_stream stream, skein_result* out, skein_error error);
+/* Cancels the operation, unless it has ended, and drops results that were not taken. Allowed in its
+ * own callback. */
+bool skein_stream_free(skein_stream stream, skein_error error);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
