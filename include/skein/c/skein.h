@@ -287,6 +287,78 @@ bool skein_stream_next(skein_stream stream, skein_result* out, skein_error error
  * own callback. */
 bool skein_stream_free(skein_stream stream, skein_error error);
 
+/* ---- providing ---- */
+
+typedef struct skein_attribute {
+  const char* name;
+  const char* value;
+} skein_attribute;
+
+/* Members that are 0 or NULL have their defaults. */
+typedef struct skein_service_options {
+  const skein_attribute* attributes; /* `latency` in ms or with a unit, `quality`, ... */
+  size_t attributes_size;
+  const char* component; /* The component description as XML. */
+  const char* csp;   /* The name of a CSP, which only its owner may use; then `owner` is needed. */
+  const char* owner; /* `system/name`: skein_entity_id() of the owner. */
+  size_t threads;    /* Own threads for the calls; default: 1. */
+  size_t queue;      /* Calls that may wait; default: 2048. */
+  skein_encoding encoding; /* Of the arguments that `on_call` gets. */
+  uint64_t reserved[4];
+} skein_service_options;
+
+/* `operation` and `arguments` hold until the reply has ended; for streams and oneway operations
+ * until `on_call` returns. The reply may be answered in `on_call`, or later on any thread: until
+ * then the call occupies no thread. It ends when it is answered, failed, raised or freed. The
+ * replies of a stream and of a oneway operation end when `on_call` returns, and need no answer. */
+typedef struct skein_service_callbacks {
+  void* user;
+  void (*on_call)(void* user, const char* operation, const skein_value* arguments,
+                  skein_reply reply);
+  void (*on_close)(void* user);
+} skein_service_callbacks;
+
+/* Provides a service, or a CSP. `options` may be NULL; `on_call` is required. */
+bool skein_provider_new(skein_entity entity, skein_interface interface,
+                        const skein_service_options* options,
+                        const skein_service_callbacks* callbacks, skein_provider* out,
+                        skein_error error);
+/* Its identity, 16 bytes. */
+bool skein_provider_identity(skein_provider provider, uint8_t out[16], skein_error error);
+/* Withdraws the service, unless its entity has ended: calls that have no answer end as
+ * SKEIN_DISCONNECTED. Waits for running callbacks, at most 2 s. Refused in a callback of the
+ * provider. */
+bool skein_provider_free(skein_provider provider, skein_error error);
+
+/* Answers with the result, and ends the reply. If the value is refused, the reply goes on. If the
+ * caller has given up, or the service was withdrawn, the answer goes nowhere. */
+bool skein_reply_answer(skein_reply reply, skein_value result, skein_error error);
+/* Answers with an error: SKEIN_UNAVAILABLE to SKEIN_INTERNAL. Ends the reply; so does raise(). */
+bool skein_reply_fail(skein_reply reply, skein_error_kind kind, const char* text,
+                      skein_error error);
+/* Answers with an exception that the operation declares, by its scoped IDL name and its members. */
+bool skein_reply_raise(skein_reply reply, const char* exception, skein_value members,
+                       skein_error error);
+/* A stream's next result. Waits while the caller is too far behind; with `sent` it does not wait,
+ * and tells whether it was sent. Fails as SKEIN_CANCELLED if nobody waits for it any more. */
+bool skein_reply_push(skein_reply reply, skein_value item, bool* sent, skein_error error);
+/* Whether nobody waits for the answer any more. */
+bool skein_reply_cancelled(skein_reply reply, bool* out, skein_error error);
+/* Until the caller's deadline; less than 0 if it has passed. */
+bool skein_reply_time_left(skein_reply reply, int64_t* out_ns, skein_error error);
+/* Calls `on_cancel` once nobody waits for the answer any more, at once if that is so, not after the
+ * answer. At most once for a reply, which may not be that of a stream. `on_close` is called when
+ * the reply has ended. */
+typedef struct skein_cancel_callbacks {
+  void* user;
+  void (*on_cancel)(void* user);
+  void (*on_close)(void* user);
+} skein_cancel_callbacks;
+bool skein_reply_on_cancel(skein_reply reply, const skein_cancel_callbacks* callbacks,
+                           skein_error error);
+/* Ends the reply; without an answer the caller gets SKEIN_INTERNAL. */
+bool skein_reply_free(skein_reply reply, skein_error error);
+
 #ifdef __cplusplus
 }
 #endif
