@@ -1,11 +1,11 @@
-# skein_add_idl(TARGET target FILES a.idl … [INCLUDES folder …] [NAMESPACE name])
+# skein_add_idl(TARGET target FILES a.idl … [INCLUDES folder …] [NAMESPACE name] [C])
 #
 # Compiles IDL for a target: adds the generated sources to it and the folder of the generated headers to its public
 # include folders (a.idl becomes a.idl.hpp). The flattened IDL for DDS without Skein (a.dds.idl) lies beside them, in the folder
 # that the target's property SKEIN_IDL_DIRECTORY names. A file below one of INCLUDES keeps its path from there: with
 # INCLUDES idl, idl/geo/point.idl becomes geo/point.idl.hpp. NAMESPACE puts all C++ names into a namespace, also those of included files, which must be
 # compiled with the same. Outputs are made anew when the file, what it includes, or the compiler changes. A file that another rule makes is named to CMake
-# before. The target links Skein itself. Its code is made position-independent, so that a plugin can link it.
+# before. With C, the code is C (a.idl.h and a.idl.c), and the target links skein::c. The target links Skein itself. Its code is made position-independent, so that a plugin can link it.
 #
 # The same in Skein's own tree, in an installed package, and in a project that adds the tree by FetchContent or add_subdirectory.
 get_filename_component(SKEIN_IDL_ROOT "${CMAKE_CURRENT_LIST_DIR}/.." ABSOLUTE)
@@ -13,7 +13,7 @@ get_filename_component(SKEIN_IDL_ROOT "${CMAKE_CURRENT_LIST_DIR}/.." ABSOLUTE)
 find_program(SKEIN_IDL_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH DOC "Python with the package lark (Debian: python3-lark)")
 
 function(skein_add_idl)
-  cmake_parse_arguments(PARSE_ARGV 0 IDL "" "TARGET;NAMESPACE" "FILES;INCLUDES")
+  cmake_parse_arguments(PARSE_ARGV 0 IDL "C" "TARGET;NAMESPACE" "FILES;INCLUDES")
   # By DEFINED: as values, names like `n`, `no` and `off` are false.
   if(DEFINED IDL_UNPARSED_ARGUMENTS OR NOT DEFINED IDL_TARGET OR NOT DEFINED IDL_FILES)
     message(FATAL_ERROR "skein_add_idl(TARGET target FILES a.idl … [INCLUDES folder …] [NAMESPACE name]): wrong arguments '${ARGN}'")
@@ -29,6 +29,13 @@ function(skein_add_idl)
   set(outputs)
   set(includes)
   set(flags)
+  set(header hpp)
+  set(source cpp)
+  if(IDL_C)
+    set(flags --language c)
+    set(header h)
+    set(source c)
+  endif()
   if(DEFINED IDL_NAMESPACE)
     list(APPEND flags --namespace ${IDL_NAMESPACE})
   endif()
@@ -46,14 +53,14 @@ function(skein_add_idl)
     get_filename_component(folder ${output} DIRECTORY)
     file(MAKE_DIRECTORY ${folder})
     add_custom_command(
-      OUTPUT ${flattened} ${output}.hpp ${output}.cpp  # the first is always written; the others, if they differ
+      OUTPUT ${flattened} ${output}.${header} ${output}.${source}  # the first is always written; the others, if they differ
       COMMAND ${SKEIN_IDL_PYTHON} -B ${compiler} ${flags} --out ${directory} --depfile ${output}.d ${path}
       DEPENDS ${path}
       DEPFILE ${output}.d
       COMMENT "IDL ${name}"
       VERBATIM)
-    target_sources(${IDL_TARGET} PRIVATE ${output}.cpp ${output}.hpp)
-    list(APPEND outputs ${output}.hpp)
+    target_sources(${IDL_TARGET} PRIVATE ${output}.${source} ${output}.${header})
+    list(APPEND outputs ${output}.${header})
   endforeach()
   # skein_generated makes all generated headers and nothing else: for tools that read sources.
   if(NOT TARGET skein_generated)

@@ -4,7 +4,7 @@ import os
 import sys
 
 import model
-from back_end import analysis, flattened, keys, output
+from back_end import analysis, c_output, flattened, keys, output
 from front_end import builder, parser, pragmas, source
 from report import Place, Report, TooManyErrors
 
@@ -49,8 +49,8 @@ class Compilation:
     def accepted(self):
         return self._report.errors == 0
 
-    def write(self, folder, name, depfile=None):
-        """Writes what is made of an accepted file below `folder`: `a/x.idl.hpp`, `a/x.idl.cpp` and `a/x.dds.idl` for `a/x.idl`."""
+    def write(self, folder, name, depfile=None, language="c++"):
+        """Writes what is made of an accepted file below `folder`: `a/x.idl.hpp`, `a/x.idl.cpp` (`.h` and `.c` for C) and `a/x.dds.idl` for `a/x.idl`."""
         file = model.File(
             path=self._source.path,
             header=os.path.basename(name) + ".hpp",
@@ -60,10 +60,11 @@ class Compilation:
             announced=self._built.announced(),
         )
         base = os.path.join(folder, name)
+        made = c_output if language == "c" else output
         outputs = {  # in the order of skein_add_idl, which make and ninja ask for
             base.removesuffix(".idl") + ".dds.idl": flattened.text(file),
-            base + ".hpp": output.header(file),
-            base + ".cpp": output.source(file),
+            base + (".h" if language == "c" else ".hpp"): made.header(file),
+            base + (".c" if language == "c" else ".cpp"): made.source(file),
         }
         os.makedirs(os.path.dirname(base) or ".", exist_ok=True)
         for path, lines in outputs.items():

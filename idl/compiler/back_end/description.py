@@ -4,6 +4,8 @@ import struct
 
 import model
 
+from . import analysis
+
 _KINDS = ("boolean", "char", "wchar", "int8", "octet", "short", "unsigned short", "long", "unsigned long", "long long",
           "unsigned long long", "float", "double", "long double")  # fmt: skip
 _STRING, _WSTRING, _SEQUENCE, _ARRAY, _MAP, _OPTIONAL, _DECLARED, _REFERENCE = range(len(_KINDS), len(_KINDS) + 8)
@@ -17,6 +19,65 @@ _DIRECTIONS = ("in", "out", "inout")
 def declaration(decl):
     """A types::Declaration of a struct, exception, union, enumeration, bitmask or bitset."""
     cdr = _Cdr()
+    _declaration(cdr, decl)
+    return bytes(cdr.bytes)
+
+
+def interface(decl):
+    """A types::Interface."""
+    cdr = _Cdr()
+    _interface(cdr, decl)
+    return bytes(cdr.bytes)
+
+
+def interface_description(decl, declarations):
+    """A languages::InterfaceDescription of the interface, or, with None, of these types alone."""
+    cdr = _Cdr()
+    _service(cdr, decl)
+    cdr.sequence(declarations, lambda each: _declaration(cdr, each))
+    cdr.sequence([decl, *decl.all_bases()] if decl else [], lambda each: _interface(cdr, each))
+    return bytes(cdr.bytes)
+
+
+def closure(declared):
+    """Them, and all declared types that they name, each once."""
+    found = {}
+    left = list(declared)
+    while left:
+        decl = left.pop(0)
+        if decl not in found:
+            found[decl] = True
+            left += uses(decl)
+    return list(found)
+
+
+def _service(cdr, decl):
+    """A discovery::ServiceDescription, of which only what holds for all providers is filled."""
+    operations = decl.all_operations() if decl else []
+    structs = [struct for each in operations for struct in (each.in_struct, each.out_struct, *each.raises)]
+    cdr.bytes += bytes(16)
+    cdr.text("/".join(decl.scope) if decl else "")
+    cdr.sequence(["/".join(base.scope) for base in decl.all_bases()] if decl else [], cdr.text)
+    cdr.sequence(operations, lambda each: (cdr.text(each.name), cdr.number("I", each.hash), cdr.number("Q", each.signature)))
+    cdr.number("B", any(analysis.uses_xcdr2(struct) for struct in structs))
+    cdr.sequence(analysis.growing(decl) if decl else [], lambda member: _growing(cdr, *member))
+    for _ in ("entity", "system", "owner"):
+        cdr.text("")
+    for _ in ("subcomponents", "attributes"):
+        cdr.sequence([], None)
+    for _ in ("component", "host", "process"):
+        cdr.text("")
+    cdr.number("I", 0)
+    cdr.text("")
+
+
+def _growing(cdr, kind, member, digest, required, _):
+    for number in (kind, member, digest):
+        cdr.number("I", number)
+    cdr.number("B", required)
+
+
+def _declaration(cdr, decl):
     cdr.text(decl.idl_name)
     cdr.number("I", len(decl.modules))
     cdr.number("B", _DECLARATIONS[type(decl)])
@@ -30,17 +91,13 @@ def declaration(decl):
         cdr.sequence(decl.all_members() if isinstance(decl, model.Struct) else [], lambda member: _member(cdr, decl, member))
     cdr.sequence(_values(decl), lambda value: (cdr.text(value[0]), cdr.number("q", value[1])))
     cdr.sequence(getattr(decl, "fields", []), lambda field: _field(cdr, field))
-    return bytes(cdr.bytes)
 
 
-def interface(decl):
-    """A types::Interface."""
-    cdr = _Cdr()
+def _interface(cdr, decl):
     cdr.text(decl.idl_name)
     cdr.number("I", len(decl.modules))
     cdr.sequence([base.idl_name for base in decl.bases], cdr.text)
     cdr.sequence(decl.operations, lambda operation: _operation(cdr, operation))
-    return bytes(cdr.bytes)
 
 
 def uses(decl):
