@@ -89,8 +89,14 @@ class Head {
   template <class Interface, class Result>
   Result perform(const Task<Interface, Result>& task, introspection::Decision* record = nullptr,
                  TimeSpan limit = std::chrono::seconds(60)) {
+    return perform(Interface::interface_info(), task, record, limit);
+  }
+  /// For an interface that is known at run time alone; `Interface` has its Proxy.
+  template <class Interface, class Result>
+  Result perform(const InterfaceInfo& interface, const Task<Interface, Result>& task,
+                 introspection::Decision* record, TimeSpan limit) {
     task_run::TypedRun<Interface, Result> run(task);
-    decide(Interface::interface_info(), run, limit, record);
+    decide(interface, run, limit, record);
     return run.take();
   }
 

@@ -193,6 +193,9 @@ bool skein_interface_new(const void* description, size_t size, skein_interface* 
  * at most `timeout_ns`; 0: 5 s. */
 bool skein_interface_fetch(skein_entity entity, const char* name, int64_t timeout_ns,
                            skein_interface* out, skein_error error);
+/* Asks an entity that publishes or subscribes to the topic for its types. Waits likewise. */
+bool skein_interface_fetch_topic(skein_entity entity, const char* topic, int64_t timeout_ns,
+                                 skein_interface* out, skein_error error);
 /* Canonical name, `AE_navigator/INavigator`; holds until the interface is freed. */
 bool skein_interface_name(skein_interface interface, const char** out, skein_error error);
 /* The description: as CDR what skein_interface_new() takes; as JSON for people and generators. */
@@ -358,6 +361,137 @@ bool skein_reply_on_cancel(skein_reply reply, const skein_cancel_callbacks* call
                            skein_error error);
 /* Ends the reply; without an answer the caller gets SKEIN_INTERNAL. */
 bool skein_reply_free(skein_reply reply, skein_error error);
+
+/* ---- topics ---- */
+
+/* What fits the data. */
+typedef int32_t skein_topic_profile;
+enum {
+  SKEIN_TOPIC_EVERY_VALUE = 0, /* Reliable, in order. */
+  SKEIN_TOPIC_SENSOR = 1,  /* Best effort; only new values matter: `period_ns` is their lifespan. */
+  SKEIN_TOPIC_COMMAND = 2, /* The newest value of the strongest publisher, once per `period_ns`. */
+  SKEIN_TOPIC_STATE = 3    /* The last value of each key, also for late joiners. */
+};
+
+/* Members that are 0 or NULL have their defaults. Use the same profile on both sides. */
+typedef struct skein_topic_options {
+  const char* const* systems; /* `systems_size` systems; default: the entity's own. */
+  size_t systems_size;
+  int64_t period_ns; /* See the profiles; default: 500 ms for sensors, 100 ms for commands. */
+  skein_topic_profile profile;
+  int32_t strength;        /* Of a publisher of commands. */
+  skein_encoding encoding; /* Of the values that `on_value` gets. */
+  uint64_t reserved[4];
+} skein_topic_options;
+
+/* `type` is the scoped name of one of the interface's types; NULL: that of the topic that was
+ * fetched. `options` may be NULL. */
+bool skein_publisher_new(skein_entity entity, skein_interface types, const char* type,
+                         const char* topic, const skein_topic_options* options,
+                         skein_publisher* out, skein_error error);
+/* Fails as SKEIN_OVERLOADED if reliable subscribers make no room in time. */
+bool skein_publisher_publish(skein_publisher publisher, skein_value value, skein_error error);
+/* How many subscribers are matched now. */
+bool skein_publisher_subscribers(skein_publisher publisher, size_t* out, skein_error error);
+/* Waits until all reliable subscribers that are matched now have what was published; `acknowledged`
+ * (may be NULL) is false if they have not by the timeout. */
+bool skein_publisher_wait(skein_publisher publisher, int64_t timeout_ns, bool* acknowledged,
+                          skein_error error);
+/* Ends it. Waits for running functions that use it. */
+bool skein_publisher_free(skein_publisher publisher, skein_error error);
+
+/* `value` holds until `on_value` returns. It runs on the entity's thread for topics. */
+typedef struct skein_subscription_callbacks {
+  void* user;
+  void (*on_value)(void* user, const skein_value* value);
+  void (*on_close)(void* user);
+} skein_subscription_callbacks;
+
+/* As skein_publisher_new(); `on_value` is required. */
+bool skein_subscription_new(skein_entity entity, skein_interface types, const char* type,
+                            const char* topic, const skein_topic_options* options,
+                            const skein_subscription_callbacks* callbacks, skein_subscription* out,
+                            skein_error error);
+/* How many publishers are matched now. */
+bool skein_subscription_publishers(skein_subscription subscription, size_t* out, skein_error error);
+/* Ends it. Waits for a running callback. Refused in its own callback. */
+bool skein_subscription_free(skein_subscription subscription, skein_error error);
+
+/* ---- the Head ---- */
+
+typedef int32_t skein_execution;
+enum {
+  SKEIN_EXECUTE_ONE = 0, /* The next CSP begins when one has failed or used up its time slice. */
+  SKEIN_EXECUTE_STAGGERED = 1, /* The next also begins when the last is late; all continue. */
+  SKEIN_EXECUTE_ALL = 2        /* All begin at once. */
+};
+
+typedef struct skein_feature {
+  const char* name;
+  double value;
+} skein_feature;
+
+/* A task for CSPs that the Head selects. Members that are 0 or NULL have their defaults. */
+typedef struct skein_task {
+  const char*
+      operation; /* Required: that each CSP is asked for; of a stream the last result counts. */
+  skein_value arguments;
+  const char* request;           /* The request's name in the record. */
+  const char* only;              /* Only the CSP with this name. */
+  const skein_feature* features; /* Properties of the request that may matter for the choice. */
+  size_t features_size;
+  size_t width;     /* How many CSPs work at a time; default: as many as there are. */
+  size_t enough;    /* How many accepted results are needed; default: 1; SIZE_MAX: all. */
+  int64_t limit_ns; /* Default: 60 s. */
+  skein_execution execution;
+  uint64_t reserved[4];
+} skein_task;
+
+/* Each may be NULL, and runs in skein_entity_perform(), on its thread. Results hold during the call
+ * of the function alone. */
+typedef struct skein_task_callbacks {
+  void* user;
+  /* Whether the result is accepted; if not, skein_error_set() gives the reason. */
+  bool (*evaluate)(void* user, const skein_value* result, skein_error reason);
+  /* The quality of an accepted result, for the history. */
+  double (*quality)(void* user, const skein_value* result);
+  /* Of several accepted results that with the lowest cost is taken; NULL: the best by quality. */
+  double (*cost)(void* user, const skein_value* result);
+} skein_task_callbacks;
+
+/* Has the entity's Head run the task, and waits. `callbacks` may be NULL, as may `out` and
+ * `decision`, which gets the record of the decision as JSON, also if the task fails. Fails as
+ * SKEIN_UNAVAILABLE if no CSP is available, SKEIN_INTERNAL if the results were rejected, or as the
+ * last attempt failed. */
+bool skein_entity_perform(skein_entity entity, skein_interface interface, const skein_task* task,
+                          const skein_task_callbacks* callbacks, skein_result* out,
+                          skein_result* decision, skein_error error);
+
+/* ---- the log and the process ---- */
+
+typedef int32_t skein_log_level;
+enum { SKEIN_LOG_DEBUG = 0, SKEIN_LOG_INFO = 1, SKEIN_LOG_WARNING = 2, SKEIN_LOG_ERROR = 3 };
+
+/* Logs a line; `place` is a part of the program. `skein log` shows it. */
+bool skein_log_write(skein_log_level level, const char* place, const char* text, skein_error error);
+/* Lines below `least` are dropped; default: SKEIN_LOG_INFO, or the environment variable SKEIN_LOG.
+ */
+bool skein_log_set_level(skein_log_level least, skein_error error);
+
+/* The texts hold until `on_line` returns; `time_ns` is that of the system's clock. It must not log.
+ * Of one that falls 4096 lines behind, lines are lost. */
+typedef struct skein_log_callbacks {
+  void* user;
+  void (*on_line)(void* user, skein_log_level level, const char* place, const char* text,
+                  int64_t time_ns);
+  void (*on_close)(void* user);
+} skein_log_callbacks;
+/* Replaces what gets the lines, which closes the last one; NULL: standard error. */
+bool skein_log_set_sink(const skein_log_callbacks* callbacks, skein_error error);
+
+/* Waits until the process is told to end: SIGTERM, SIGINT (Ctrl-C) or SIGHUP, and gives the signal
+ * (`out` may be NULL). Only one thread may wait. */
+bool skein_signal_wait(int32_t* out, skein_error error);
 
 #ifdef __cplusplus
 }
