@@ -62,7 +62,7 @@ _FLOOR_OF_HEADER = {
     for name in names.split()
 }
 # For C and all languages that call it: skein/c/NAME.h.
-C_HEADERS = ("skein",)
+C_HEADERS = ("api", "skein")
 _FLOOR_OF_HEADER |= {f"skein/c/{name}.h": "languages/c" for name in C_HEADERS}
 # Neighbours on one floor do not know each other, but for these.
 NEIGHBOURS = {("mission/profile", "mission/component")}
