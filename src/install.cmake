@@ -4,14 +4,14 @@ include(CMakePackageConfigHelpers)
 
 set(skein_package ${CMAKE_INSTALL_LIBDIR}/cmake/skein)
 
-# Exported as skein::skein, skein::fusion and skein::navigation_idl; the others only serve plugins at run time.
+# Exported as skein::skein, skein::c, skein::fusion and skein::navigation_idl; the others only serve plugins at run time.
 set_target_properties(skein_navigation_idl PROPERTIES EXPORT_NAME navigation_idl)
 set_target_properties(skein_fusion PROPERTIES EXPORT_NAME fusion)
-set(skein_libraries skein skein_mission skein_fusion skein_navigation_idl skein_navigation skein_route_checker)
+set(skein_libraries skein skein_c skein_mission skein_fusion skein_navigation_idl skein_navigation skein_route_checker)
 set_target_properties(${skein_libraries} PROPERTIES
   VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR} INSTALL_RPATH "$ORIGIN")
 
-install(TARGETS skein skein_fusion skein_navigation_idl EXPORT skeinTargets
+install(TARGETS skein skein_c skein_fusion skein_navigation_idl EXPORT skeinTargets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(TARGETS skein_mission skein_navigation skein_route_checker LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(EXPORT skeinTargets NAMESPACE skein:: DESTINATION ${skein_package})
