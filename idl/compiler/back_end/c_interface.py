@@ -132,6 +132,8 @@ def _provide(interface):
         f"    skein_service_callbacks callbacks = {{service, {name}_on_call, {name}_on_close}};",
         "    done = skein_provider_new(entity, interface, &given, &callbacks, out, error);",
         "    if (!done) free(service);",
+        "  } else {",
+        '    skein_error_set(error, SKEIN_INTERNAL, "there is not enough memory");',
         "  }",
         "  skein_error none = {0};",
         "  skein_interface_free(interface, none);",

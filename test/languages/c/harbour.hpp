@@ -88,12 +88,13 @@ inline skein_value cdr_of(const Bytes& message) {
 
 /// An entity of the C interface.
 struct CEntity {
-  explicit CEntity(const char* name, const std::string& vendor) {
+  explicit CEntity(const char* name, const std::string& vendor, std::int64_t lease_ns = 0) {
     skein_entity_options options{};
     options.name = name;
     options.system = "uav-1";
     options.vendor = vendor.c_str();
     options.domain = 17;
+    options.lease_ns = lease_ns;
     if (!skein_entity_new(&options, &entity, error)) FAIL(error.text());
   }
   ~CEntity() { skein_entity_free(entity, {}); }
