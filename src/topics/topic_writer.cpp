@@ -11,6 +11,7 @@
 #include "idl/encode_value.hpp"
 #include "register.hpp"
 #include "skein/detail/cdr.hpp"
+#include "skein/error.hpp"
 #include "skein/publisher.hpp"
 #include "wire_topic.hpp"
 
@@ -21,6 +22,14 @@ namespace {
 /// Best effort, so large a value hardly arrives: it travels in more pieces than a receiver's socket
 /// buffer has room for, and each that is lost loses it.
 constexpr std::size_t kTooLarge = 1 << 20;
+
+/// Of the port's Qos, 0 is no limit; here it would let a publisher wait for nobody.
+void check(const TopicQos& qos, const std::string& topic) {
+  if (!qos.reliable || qos.history_depth || qos.max_samples > 0) return;
+  throw InvalidArgument("topic '" + topic +
+                        "': `max_samples` is 0, by which no value may be unacknowledged; give it "
+                        "1 or more, or set `history_depth`");
+}
 
 }  // namespace
 
@@ -61,6 +70,7 @@ struct TopicWriter::State {
 TopicWriter::TopicWriter(dds::Participant& participant, const std::string& name,
                          const TopicType& type, const TopicQos& qos, Register* known)
     : state_(std::make_unique<State>(name, type, !qos.reliable)) {
+  check(qos, name);
   dds::WriterListener listener;
   listener.on_deadline_missed = [state = state_.get()](const Guid&) { ++state->missed_deadlines; };
   listener.on_incompatible = [](const dds::Incompatibility& why) {

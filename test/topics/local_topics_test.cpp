@@ -62,6 +62,14 @@ TEST_CASE_METHOD(Sea,
   CHECK(watch.counters().received == 3);
 }
 
+TEST_CASE_METHOD(Sea, "a limit by which nothing could be published is refused") {
+  TopicQos none;
+  none.max_samples = 0;
+  CHECK_THROWS_WITH(helm(none), Contains("topic 'rudder': `max_samples` is 0"));
+  none.history_depth = 1;
+  CHECK_NOTHROW(helm(none));
+}
+
 TEST_CASE_METHOD(Sea, "a long row of values is handed over whole, in several turns") {
   auto rudder = helm();
   const auto watch = watch_rudder();
