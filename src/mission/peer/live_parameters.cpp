@@ -112,7 +112,7 @@ RunningParameter LiveParameters::set(const std::string& name, const std::string&
   const std::lock_guard changing(changing_);
   std::shared_ptr<const Change> change;
   ParameterValue wanted;
-  std::string text;
+  std::string text, plain_name;
   {
     const std::lock_guard lock(mutex_);
     const Parameter& parameter = find(name);
@@ -124,8 +124,10 @@ RunningParameter LiveParameters::set(const std::string& name, const std::string&
     wanted = profile::parse_value(*parameter.entry, value);
     text = profile::plain_text(*parameter.entry, value);
     change = parameter.change;
+    plain_name = parameter.entry->name;
   }
   try {
+    check_(plain_name, wanted);
     (*change)(wanted);
   } catch (const std::exception& error) {
     throw ValueRefused(error.what());

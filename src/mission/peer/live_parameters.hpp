@@ -20,10 +20,12 @@ class LiveParameters final : public ILiveParameters,
                              public std::enable_shared_from_this<LiveParameters> {
  public:
   using Offer = std::function<void(std::shared_ptr<ILiveParameters> service)>;
+  /// Throws what a check of the parameter throws, whose name is without a prefix.
+  using Check = std::function<void(const std::string& name, const ParameterValue& value)>;
   /// `dictionary` outlives this object. `offer` is called once, on the thread of the component that
   /// is the first to declare a parameter that may change.
-  LiveParameters(const profile::Dictionary& dictionary, Offer offer)
-      : dictionary_(dictionary), offer_(std::move(offer)) {}
+  LiveParameters(const profile::Dictionary& dictionary, Check check, Offer offer)
+      : dictionary_(dictionary), check_(std::move(check)), offer_(std::move(offer)) {}
 
   /// What a component gets: its profile's values, as the dictionary types them. It has been checked
   /// that it knows them. `prefix` stands before the names of its parameters here.
@@ -49,6 +51,7 @@ class LiveParameters final : public ILiveParameters,
   Parameter& find(const std::string& name);
 
   const profile::Dictionary& dictionary_;
+  const Check check_;
   const Offer offer_;
   std::mutex changing_;  ///< Held while a component's code runs; comes before the other one.
   std::mutex mutex_;     ///< Guards what follows.

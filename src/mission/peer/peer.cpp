@@ -94,12 +94,16 @@ EntityOptions options_of(const MissionProfile& mission, const PeerProfile& peer,
 }
 
 /// Of the components of one process. They are offered once one may change.
-std::shared_ptr<LiveParameters> parameters_of(Entity& entity,
-                                              const profile::Dictionary& dictionary) {
-  return std::make_shared<LiveParameters>(dictionary,
-                                          [&entity](std::shared_ptr<ILiveParameters> service) {
-                                            entity.provide<ILiveParameters>(std::move(service));
-                                          });
+std::shared_ptr<LiveParameters> parameters_of(Entity& entity, const profile::Dictionary& dictionary,
+                                              const ComponentRegistry& registry) {
+  return std::make_shared<LiveParameters>(
+      dictionary,
+      [&registry](const std::string& name, const ParameterValue& value) {
+        registry.check_value(name, value);
+      },
+      [&entity](std::shared_ptr<ILiveParameters> service) {
+        entity.provide<ILiveParameters>(std::move(service));
+      });
 }
 
 // What the component's description declares of the interface that `servant` implements.
@@ -381,7 +385,7 @@ int run_csp(const MissionProfile& mission, const PeerProfile& peer, const CspPro
   EntityOptions options = options_of(mission, peer, csp);
   options.name += "." + csp.name;
   Entity entity(std::move(options));
-  const auto parameters = parameters_of(entity, mission.dictionary);
+  const auto parameters = parameters_of(entity, mission.dictionary, registry);
   provide_csp(entity, peer.system + "/" + peer.name, mission, csp, plugins,
               parameters->values_of("", csp.parameters));
   report_ready();
@@ -460,7 +464,7 @@ int run_peer(const MissionProfile& mission, const PeerProfile& peer, ComponentRe
   self = &entity;
   const auto watch_csps = entity.broker().observe(
       [&](const brokerless_discovery::Change& change) { end_stopped_csp(entity, peer, change); });
-  const auto parameters = parameters_of(entity, mission.dictionary);
+  const auto parameters = parameters_of(entity, mission.dictionary, registry);
   const ParameterValues values = parameters->values_of("", peer.parameters);
   for (const CspProfile& csp : peer.csps) {
     if (csp.process != profile::CspProcess::InOwner) continue;

@@ -31,7 +31,12 @@ struct Peer {
   int offered = 0;
   bool has_room = true;
   std::shared_ptr<LiveParameters> parameters = std::make_shared<LiveParameters>(
-      dictionary(), [this](const std::shared_ptr<ILiveParameters>&) {
+      dictionary(),
+      [](const std::string& name, const ParameterValue& value) {
+        if (name == "Name" && std::get<std::string>(value) == "nobody")
+          throw InvalidArgument("somebody has to be named");
+      },
+      [this](const std::shared_ptr<ILiveParameters>&) {
         if (!has_room) throw Unavailable("no room for a service");
         ++offered;
       });
@@ -70,6 +75,13 @@ TEST_CASE("a value that the dictionary forbids is refused as in a profile, and t
   CHECK((period.get() == 100ms && lift.get() == 3));
   peer.parameters->set("Lift", "0.2 km");
   CHECK(lift.get() == 200);
+}
+
+TEST_CASE("a value that a plugin's check refuses does not come to the component") {
+  const Peer peer;
+  const auto name = peer.values.live<std::string>("Name");
+  CHECK_THROWS_WITH(peer.parameters->set("Name", "nobody"), Contains("somebody has to be named"));
+  CHECK(name.get() == "heron");
 }
 
 TEST_CASE("a component may refuse a value with a reason, and keeps the old one") {
