@@ -95,7 +95,8 @@ class Checker {
     }
   }
 
-  /// What is written to one file twice spoils it, whatever the ways to it are called.
+  /// What is written to one file twice spoils it, whatever the ways to it are called. Without its
+  /// folder it cannot be made: other hosts have others.
   void check_files() {
     Repeated files("the file of a history or decision_log");
     for (const auto& peer : mission_.peers) {
@@ -103,6 +104,19 @@ class Checker {
       for (const std::string& file : {peer.head.history, peer.head.log})
         files.add(std::filesystem::path(file).lexically_normal().string(), host, peer.where,
                   findings_);
+      if (host.empty()) check_folders(peer);
+    }
+  }
+
+  void check_folders(const PeerProfile& peer) {
+    for (const std::string& file : {peer.head.history, peer.head.log}) {
+      const std::filesystem::path folder = std::filesystem::path(file).parent_path();
+      std::error_code ignored;
+      if (folder.empty() || std::filesystem::is_directory(folder, ignored)) continue;
+      findings_.error(
+          peer.where,
+          "the folder of the history or decision_log " + in_quotes(file) + " is not there",
+          "make it, or start the mission where it is");
     }
   }
 

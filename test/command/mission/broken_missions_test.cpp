@@ -269,6 +269,10 @@ std::vector<Broken> broken_missions() {
       {"a history that is the log, too",
        R"(<peer name="a" component="office.xml" history="d" decision_log="d"/>)",
        "the file of a history or decision_log \"d\" is there twice"},
+      {"a history in no folder", R"(<peer name="a" component="office.xml" history="past/h.json"/>)",
+       "town.xml:2:1: error: the folder of the history or decision_log \"past/h.json\" is not "
+       "there; "
+       "make it, or start the mission where it is"},
       {"loopback between processes",
        R"(<peer name="a" component="office.xml" vendor="loopback"/>
 <peer name="h" component="herald.xml" role="mission"/>)",
