@@ -210,6 +210,7 @@ struct Entity::State {
              options.head) {}
 
   std::unique_ptr<dds::Participant> make_participant() const {
+    is_logged(LogLevel::Error);  // tells of a SKEIN_LOG that is no level
     if (!options.vendor) {
       throw InvalidArgument("entity '" + options.name +
                             "' has no vendor; pass dds::load_vendor(\"" +

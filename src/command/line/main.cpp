@@ -20,6 +20,7 @@
 #include "mission/process/exit_codes.hpp"
 #include "mission/xml/finding.hpp"
 #include "skein/error.hpp"
+#include "skein/log.hpp"
 
 namespace skein::command {
 namespace {
@@ -193,6 +194,7 @@ int with_output_checked(int code) {
 
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // beyond `ulimit -f` a write fails, which is told in words
+  skein::is_logged(skein::LogLevel::Error);  // tells of a SKEIN_LOG that is no level
   CLI::App app;
   int result = 0;
   skein::command::make_command_line(app, result);

@@ -128,6 +128,14 @@ std::string last_frame(const std::string& output) {
 
 }  // namespace
 
+TEST_CASE("a command tells of a SKEIN_LOG that is no level, though it logs nothing") {
+  CommandOptions options;
+  options.prepare = [] { setenv("SKEIN_LOG", "loud", 1); };
+  CommandRun version({"--version"}, options);
+  CHECK(version.wait() == 0);
+  CHECK_THAT(version.output(), Contains("SKEIN_LOG is 'loud', which is no level"));
+}
+
 TEST_CASE("peers are listed with their processes and services, whatever their vendor") {
   const std::string vendor = GENERATE("fastdds", "cyclonedds");
   if (!installed("cyclonedds") || !installed(vendor)) return;
