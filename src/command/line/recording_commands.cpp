@@ -101,8 +101,8 @@ void add_export(CLI::App& app, int& result) {
                          "The folder for a table of each topic, made if need be; default: none");
   auto* lines = command.add_option(
       "--lines", arguments.lines,
-      "The file for all values, those of calls, too, as lines of JSON with topic and time; "
-      "default: none");
+      "The file for all values, those of calls, too, as lines of JSON with topic and time; `-` is "
+      "standard output; default: none");
   auto* perfetto = command.add_option("--perfetto", arguments.perfetto,
                                       "The file for a trace for Perfetto; default: none");
   csv->excludes(lines)->excludes(perfetto)->type_name(kFile);

@@ -1,9 +1,13 @@
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstdio>
 #include <map>
+#include <mutex>
+#include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "command/commands.hpp"
 #include "command/print/interruption.hpp"
@@ -12,6 +16,7 @@
 #include "command/print/wrapped.hpp"
 #include "core/log.hpp"
 #include "core/printable.hpp"
+#include "core/suggestion.hpp"
 #include "rpc/service/introspection_topic.hpp"
 #include "service_names.hpp"
 #include "skein/entity.hpp"
@@ -21,6 +26,9 @@ namespace skein::command {
 namespace {
 
 constexpr std::size_t kLongestText = 4096;
+constexpr std::size_t kMostOthers = 20;
+// In which who is known has told what was logged before.
+constexpr double kListens_s = 3;
 
 introspection::Severity level_of(const std::string& word) {
   for (const auto level : {LogLevel::Debug, LogLevel::Info, LogLevel::Warning}) {
@@ -36,7 +44,7 @@ class LogPrinter {
       : arguments_(arguments), least_(level_of(arguments.level)) {}
 
   void show(const introspection::LogLine& line) {
-    if (!arguments_.entity.empty() && !is_entity_named(line.entity, arguments_.entity)) return;
+    if (!is_asked_for(line.entity)) return;
     auto& [latest, time] = shown_[{line.host, line.pid}];
     if (line.number <= latest && line.time <= time) return;  // a later one of less: a new process
     latest = line.number;
@@ -46,7 +54,35 @@ class LogPrinter {
     std::fflush(stdout);
   }
 
+  /// If only others have told something, the name may be wrong.
+  void tell_others() {
+    std::lock_guard lock(mutex_);
+    if (others_.empty() || heard_) return;
+    const std::vector<std::string> known(others_.begin(), others_.end());
+    const std::string nearest = suggestion(arguments_.entity, known);
+    std::fprintf(stderr, "skein: no line of '%s' has come%s\n",
+                 printable(arguments_.entity).c_str(),
+                 nearest.empty() ? ("; there are some of " + joined(known)).c_str()
+                                 : printable(nearest).c_str());
+  }
+
  private:
+  bool is_asked_for(const std::string& entity) {
+    if (arguments_.entity.empty() || is_entity_named(entity, arguments_.entity)) {
+      std::lock_guard lock(mutex_);
+      return heard_ = true;
+    }
+    std::lock_guard lock(mutex_);
+    if (others_.size() < kMostOthers) others_.insert(entity.substr(entity.find('/') + 1));
+    return false;
+  }
+
+  static std::string joined(const std::vector<std::string>& names) {
+    std::string all;
+    for (const std::string& each : names) all += (all.empty() ? "" : ", ") + printable(each);
+    return all;
+  }
+
   static void print(const introspection::LogLine& line) {
     std::array<char, 16> milliseconds{};
     std::snprintf(milliseconds.data(), milliseconds.size(), ".%03u ",
@@ -61,6 +97,9 @@ class LogPrinter {
   const LogArguments& arguments_;
   const introspection::Severity least_;
   std::map<std::pair<std::string, std::uint32_t>, std::pair<std::uint64_t, std::uint64_t>> shown_;
+  std::mutex mutex_;  // of what follows
+  bool heard_ = false;
+  std::set<std::string> others_;
 };
 
 }  // namespace
@@ -73,7 +112,12 @@ int show_log(const LogArguments& arguments) {
       entity.participant(), introspection::kLog,
       [&](const introspection::LogLine& line) { printer.show(line); });
   tell_waiting(arguments, "the next line of a log");
-  interruption.wait(arguments.seconds);
+  const bool for_ever = arguments.seconds == 0;
+  const double listens = for_ever ? kListens_s : std::min(kListens_s, arguments.seconds);
+  if (interruption.wait(listens)) return 0;
+  printer.tell_others();
+  if (for_ever || arguments.seconds > listens)
+    interruption.wait(for_ever ? 0 : arguments.seconds - listens);
   return 0;
 }
 

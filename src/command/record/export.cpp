@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <system_error>
@@ -12,6 +13,7 @@
 #include "csv_table.hpp"
 #include "recording/recorded_values.hpp"
 #include "recording/viewers/perfetto_trace.hpp"
+#include "skein/error.hpp"
 
 namespace skein::command {
 namespace {
@@ -25,16 +27,23 @@ void refuse_existing(const std::filesystem::path& file) {
                     "' is there already; name another one, or remove that one");
 }
 
-/// A new file, which has to be closed.
+bool is_standard_output(const std::string& file) { return file == "-"; }
+
+/// A new file, or standard output, which has to be closed.
 class Output {
  public:
   explicit Output(std::filesystem::path file) : file_(std::move(file)) {
+    if (is_standard_output(file_)) return;
     refuse_existing(file_);
     stream_.open(file_, std::ios::binary);
     check();
   }
-  std::ostream& stream() { return stream_; }
+  std::ostream& stream() { return stream_.is_open() ? stream_ : std::cout; }
   void close() {
+    if (!stream_.is_open()) {
+      std::cout.flush();
+      return;
+    }
     stream_.close();
     check();
   }
@@ -164,10 +173,13 @@ void print_exported(const Counts& counts) {
 }  // namespace
 
 int export_recording(const ExportArguments& arguments) {
+  if (is_standard_output(arguments.csv) || is_standard_output(arguments.perfetto))
+    throw InvalidArgument("'-', standard output, is for --lines alone; give a name");
   const recording::Reader reader(arguments.file);
   const Counts counts = !arguments.csv.empty()     ? export_csv(reader, arguments)
                         : !arguments.lines.empty() ? export_lines(reader, arguments)
                                                    : export_perfetto(reader, arguments.perfetto);
+  if (is_standard_output(arguments.lines)) return 0;
   arguments.json ? print_json(counts, false) : print_exported(counts);
   return 0;
 }

@@ -183,11 +183,14 @@ TEST_CASE("log shows what a process has logged before, and what it logs from the
   greet("late");
   REQUIRE(log.prints("field/station info: greeter: greets late\n"));
   Command errors = field.start({"log", "--level", "error", "--for", "2"});
+  Command misspelt = field.start({"log", "--entity", "staton", "--for", "4"});
   Command json = field.start({"log", "--json"});
   REQUIRE(json.prints("greets late"));
   CHECK(json.json_lines().front()["level"] == "Info");
   CHECK(errors.code() == 0);
   CHECK(errors.printed().empty());
+  CHECK(misspelt.code() == 0);
+  CHECK_THAT(misspelt.said(), Contains("no line of 'staton' has come (did you mean 'station'?)"));
   log.signal(SIGINT);
   CHECK(log.code() == 0);
   const std::string all = log.printed();
@@ -661,6 +664,9 @@ TEST_CASE("what is recorded can be looked into, exported, and replayed") {
     CHECK(first["topic"] == "plot");
     CHECK(first["value"] == Json::parse(kPlot));
     CHECK(first["time_ns"] > 0);
+    Command piped({"export", file, "--lines", "-", "--topics", "plot"});
+    CHECK(piped.code() == 0);
+    CHECK(piped.printed() == text_of(shelf / "a.jsonl"));
   }
   SECTION("export to nothing") {
     Command nowhere({"export", file});
