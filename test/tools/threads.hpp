@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,13 @@ inline std::vector<pid_t> threads_named(const std::string& name) {
     if (its_name == name) found.push_back(std::stoi(thread.path().filename()));
   }
   return found;
+}
+
+/// Whether a thread of this process waits for something.
+inline bool is_asleep(pid_t thread) {
+  std::ifstream file("/proc/self/task/" + std::to_string(thread) + "/stat");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  return text.substr(text.rfind(')') + 2, 1) == "S";
 }
 
 }  // namespace skein::test

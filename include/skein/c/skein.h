@@ -172,9 +172,10 @@ typedef struct skein_entity_options {
 /* Joins the mission: an autonomous entity with one DDS participant. */
 bool skein_entity_new(const skein_entity_options* options, skein_entity* out, skein_error error);
 /* Leaves the mission: ends its publishers and subscriptions, withdraws its services, and ends all
- * connections; pending calls end as SKEIN_DISCONNECTED. Proxies and calls may outlive it. Waits for
- * running functions that use the entity, for running callbacks of subscriptions, and at most 2 s
- * for calls that hang. Refused in a callback of this entity. */
+ * connections; pending calls end as SKEIN_DISCONNECTED, waits for a provider as SKEIN_UNAVAILABLE.
+ * Proxies and calls may outlive it. Waits for running functions that use the entity, for running
+ * callbacks of subscriptions, and at most 2 s for calls that hang. Refused in a callback of this
+ * entity. */
 bool skein_entity_free(skein_entity entity, skein_error error);
 /* `system/name`; holds until the entity is freed. */
 bool skein_entity_id(skein_entity entity, const char** out, skein_error error);

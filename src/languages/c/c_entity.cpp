@@ -53,7 +53,11 @@ bool skein_entity_new(const skein_entity_options* options, skein_entity* out, sk
 bool skein_entity_free(skein_entity entity, skein_error error) {
   return attempt(error, [&] {
     refuse_inside(entity.id, "skein_entity_free");
-    if (const auto object = remove<EntityObject>(entity)) object->end();
+    const auto object = remove<EntityObject>(entity);
+    if (!object) return;
+    // Who waits for a provider would be waited for.
+    attempt({}, [&] { object->use()->connector().close(); });
+    object->end();
   });
 }
 

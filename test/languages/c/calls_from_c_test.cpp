@@ -1,4 +1,9 @@
+#include <unistd.h>
+
+#include <future>
+
 #include "harbour.hpp"
+#include "test/tools/threads.hpp"
 
 using namespace skein;
 using namespace skein::test;
@@ -216,6 +221,28 @@ TEST_CASE_METHOD(Harbour,
   REQUIRE(eventually([&] { return freeing.closed == 1; }));
   CHECK_FALSE(freeing.freed);
   CHECK_THAT(freeing.why, Catch::Contains("in a callback of this entity"));
+}
+
+TEST_CASE_METHOD(Harbour, "who waits for a provider is told when its entity ends") {
+  const auto client = std::make_unique<CEntity>("waiting", Pairing::get().client->name());
+  const skein_interface interface = client->fetched();
+  std::atomic<pid_t> waiting = 0;
+  auto waited = std::async(std::launch::async, [&] {
+    const CError failure;
+    skein_connect_options options{};
+    options.name = "nobody";
+    options.timeout_ns = 60 * SKEIN_SECOND;
+    skein_proxy proxy{};
+    waiting = ::gettid();
+    const bool connected =
+        skein_proxy_connect(client->entity, interface, &options, &proxy, failure);
+    return connected ? SKEIN_OK : failure.kind();
+  });
+  REQUIRE(eventually([&] { return waiting != 0 && is_asleep(waiting); }));
+  const auto freed = std::chrono::steady_clock::now();
+  skein_entity_free(client->entity, client->error);
+  CHECK(waited.get() == SKEIN_UNAVAILABLE);
+  CHECK(std::chrono::steady_clock::now() - freed < 30s);
 }
 
 TEST_CASE("a handle that is 0, freed, of another kind, or invented is refused in words") {
