@@ -4,7 +4,7 @@ import os
 import sys
 
 import model
-from back_end import analysis, c_output, flattened, keys, output
+from back_end import analysis, c_output, flattened, keys, output, python_output
 from front_end import builder, parser, pragmas, source
 from report import Place, Report, TooManyErrors
 
@@ -50,7 +50,8 @@ class Compilation:
         return self._report.errors == 0
 
     def write(self, folder, name, depfile=None, language="c++"):
-        """Writes what is made of an accepted file below `folder`: `a/x.idl.hpp`, `a/x.idl.cpp` (`.h` and `.c` for C) and `a/x.dds.idl` for `a/x.idl`."""
+        """Writes what is made of an accepted file below `folder`: for `a/x.idl` `a/x.dds.idl`, `a/x.idl.hpp` and `a/x.idl.cpp` (`.h` and `.c` for C); for
+        Python `a/x_idl.py` and `a/x_idl.pyi`."""
         file = model.File(
             path=self._source.path,
             header=os.path.basename(name) + ".hpp",
@@ -61,16 +62,23 @@ class Compilation:
         )
         base = os.path.join(folder, name)
         made = c_output if language == "c" else output
-        outputs = {  # in the order of skein_add_idl, which make and ninja ask for
-            base.removesuffix(".idl") + ".dds.idl": flattened.text(file),
-            base + (".h" if language == "c" else ".hpp"): made.header(file),
-            base + (".c" if language == "c" else ".cpp"): made.source(file),
-        }
+        if language == "python":
+            outputs = python_output.outputs(file, base, self._name_of)
+        else:
+            outputs = {  # in the order of skein_add_idl, which make and ninja ask for
+                base.removesuffix(".idl") + ".dds.idl": flattened.text(file),
+                base + (".h" if language == "c" else ".hpp"): made.header(file),
+                base + (".c" if language == "c" else ".cpp"): made.source(file),
+            }
         os.makedirs(os.path.dirname(base) or ".", exist_ok=True)
         for path, lines in outputs.items():
             _write(path, "\n".join(lines).rstrip("\n") + "\n")
         if depfile:
             self._write_depfile(depfile, outputs)
+
+    def _name_of(self, path):
+        """The path of an included file from a folder that is searched, else its last part."""
+        return next((path.removeprefix(folder) for folder in self._folders if path.startswith(folder)), os.path.basename(path))
 
     def _usable_includes(self):
         """Without included files that declare nothing, and those that have no output, because they were refused; nothing of them is used."""
