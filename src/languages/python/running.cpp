@@ -1,0 +1,129 @@
+#include "running.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+
+namespace skein::python {
+namespace {
+
+/// Threads of Skein's that are in Python.
+struct Visitors {
+  std::mutex mutex;
+  std::condition_variable changed;
+  int inside = 0;
+  bool closed = false;
+
+  static Visitors& all() {
+    static auto& visitors = *new Visitors();
+    return visitors;
+  }
+};
+
+unsigned long main_thread = 0;
+
+/// Tells of SIGINT, whose handler it calls afterwards: Python's runs what `signal.signal()` was
+/// given only when the main thread does not wait any more.
+class SignalWatch {
+ public:
+  static SignalWatch& instance() {
+    static auto& watch = *new SignalWatch();
+    return watch;
+  }
+
+  void set(std::function<void()> interrupt) {
+    if (interrupt) listen();
+    std::lock_guard lock(mutex_);
+    interrupt_ = std::move(interrupt);
+  }
+
+ private:
+  SignalWatch() {
+    if (::pipe2(pipe_.data(), O_CLOEXEC | O_NONBLOCK) == 0)
+      std::thread([this] { watch(); }).detach();
+  }
+
+  /// Whoever sets a handler replaces this one.
+  void listen() {
+    struct sigaction now {};
+    ::sigaction(SIGINT, nullptr, &now);
+    const bool handled = now.sa_handler != SIG_DFL && now.sa_handler != SIG_IGN;
+    if (!handled || now.sa_sigaction == &handle) return;
+    previous_ = now;
+    now.sa_sigaction = &handle;
+    now.sa_flags |= SA_SIGINFO;
+    ::sigaction(SIGINT, &now, nullptr);
+  }
+
+  static void handle(int signal, siginfo_t* info, void* context) {
+    const int error = errno;
+    const SignalWatch& watch = instance();
+    [[maybe_unused]] const auto written = ::write(watch.pipe_[1], "", 1);
+    errno = error;
+    const struct sigaction& before = watch.previous_;
+    if (before.sa_flags & SA_SIGINFO) return before.sa_sigaction(signal, info, context);
+    before.sa_handler(signal);
+  }
+
+  void watch() {
+    for (;;) {
+      pollfd watched{pipe_[0], POLLIN, 0};
+      char signals[16];
+      if (::poll(&watched, 1, -1) < 0 || ::read(pipe_[0], signals, sizeof signals) <= 0) continue;
+      std::lock_guard lock(mutex_);
+      if (interrupt_) std::exchange(interrupt_, nullptr)();
+    }
+  }
+
+  std::array<int, 2> pipe_{-1, -1};
+  struct sigaction previous_ {};
+  std::mutex mutex_;
+  std::function<void()> interrupt_;
+};
+
+}  // namespace
+
+Entered::Entered() {
+  auto& visitors = Visitors::all();
+  {
+    std::lock_guard lock(visitors.mutex);
+    if (visitors.closed || is_forked()) return;
+    ++visitors.inside;
+  }
+  state_ = PyGILState_Ensure();
+}
+
+Entered::~Entered() {
+  if (!state_) return;
+  PyGILState_Release(*state_);
+  auto& visitors = Visitors::all();
+  std::lock_guard lock(visitors.mutex);
+  if (--visitors.inside == 0) visitors.changed.notify_all();
+}
+
+void leave_python() {
+  const py::gil_scoped_release unlocked;
+  auto& visitors = Visitors::all();
+  std::unique_lock lock(visitors.mutex);
+  visitors.closed = true;
+  visitors.changed.wait_for(lock, std::chrono::seconds(2), [&] { return visitors.inside == 0; });
+}
+
+bool is_main_thread() { return PyThread_get_thread_ident() == main_thread; }
+
+void set_main_thread(unsigned long identity) { main_thread = identity; }
+
+Interruptible::Interruptible(std::function<void()> interrupt) : main_(is_main_thread()) {
+  if (main_) SignalWatch::instance().set(std::move(interrupt));
+}
+
+Interruptible::~Interruptible() {
+  if (main_) SignalWatch::instance().set(nullptr);
+}
+
+}  // namespace skein::python
