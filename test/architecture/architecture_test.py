@@ -280,7 +280,8 @@ class Texts(TreeTest):
 
     def test_code_in_readme_that_an_example_holds_is_taken(self):
         self.write("examples/01/x.cpp", "#include <a>\n\nint main() {\n  f();\n}\n")
-        self.write("README.md", "```cpp\nint main() {\n  f();\n}\n```\n\n```sh\n./dev test\n```\n")
+        self.write("examples/01/x.py", "import a\n\na.f()\n")
+        self.write("README.md", "```cpp\nint main() {\n  f();\n}\n```\n\n```python\na.f()\n```\n\n```sh\n./dev test\n```\n")
         self.assertFindsNothing(text_rules.quotes(self.tree))
 
     def test_code_in_readme_that_only_the_guides_files_hold_is_found(self):

@@ -11,6 +11,7 @@ _SLEEP = re.compile(r"\b(sleep_for|sleep_until|usleep|nanosleep|time\.sleep)\b|\
 # The only tests that sleep, and why.
 SLEEPERS = {
     "test/tools/eventually.hpp": "looks again at a condition",
+    "test/languages/python/tools.py": "looks again at a condition",
     "test/tools/stopped.hpp": "how long a process is stopped",
     "test/mission/supervise/shell_mission.hpp": "looks again at a condition",
     "test/connector/echo_service.cpp": "an operation that takes its time until it is cancelled",
@@ -27,7 +28,7 @@ SLEEPERS = {
 
 # Which code of a text must stand, as it is, in files of which folders.
 QUOTING = {
-    "README.md": (("cpp", "idl"), ("examples",)),
+    "README.md": (("cpp", "idl", "python"), ("examples",)),
     "GUIDE.md": (("cpp", "idl", "xml"), ("examples", "test/guide")),
 }
 
@@ -75,7 +76,7 @@ def quotes(tree):
     """Code that a text quotes and that no file which it may quote holds, line by line; common indentation does not count."""
     for path, (_, folders) in QUOTING.items():
         sources = [
-            tree.text(source).splitlines() for folder in folders for source in tree.files((*SOURCES, ".idl", ".xml"), folder)
+            tree.text(source).splitlines() for folder in folders for source in tree.files((*SOURCES, ".idl", ".py", ".xml"), folder)
         ]
         for language, code in _quoted_by(tree, path):
             lines = _without_margin(code.strip("\n").splitlines())
