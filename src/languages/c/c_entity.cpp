@@ -55,7 +55,7 @@ bool skein_entity_free(skein_entity entity, skein_error error) {
     refuse_inside(entity.id, "skein_entity_free");
     const auto object = remove<EntityObject>(entity);
     if (!object) return;
-    // Who waits for a provider would be waited for.
+    // Threads that wait for a provider use the entity, and end() would wait for them.
     attempt({}, [&] { object->use()->connector().close(); });
     object->end();
   });

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <span>
 
 #include "core/system/interface_name.hpp"
@@ -109,7 +110,9 @@ idl::DynamicValue checked(const TypeSupport& type, const skein_value& value) {
 const idl::DynamicType& InterfaceObject::type(const std::string& name) {
   const bool result = name.ends_with(".out");
   const std::string operation = result ? name.substr(0, name.size() - 4) : name;
-  if (!name_.empty() && name.find("::") == std::string::npos) {
+  const bool declared =
+      std::ranges::count(told_.types.declarations, name, &types::Declaration::name) > 0;
+  if (!name_.empty() && !declared) {
     const OperationInfo& found = of(idl::DynamicForm::Cdr).operation(operation);
     return idl::DynamicSupport::of(result ? *found.out : *found.in)->type;
   }

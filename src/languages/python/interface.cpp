@@ -63,8 +63,12 @@ std::pair<std::string, std::map<std::string, std::int64_t>> Interface::cases(
 }
 
 std::shared_ptr<Operation> Interface::operation(const std::string& name) {
+  const OperationInfo& found = object_->of(idl::DynamicForm::Cdr).operation(name);
+  const auto node_of = [this](const TypeSupport& type) {
+    return &nodes_.of(idl::DynamicSupport::of(type)->type);
+  };
   return std::make_shared<Operation>(
-      Operation{shared_from_this(), name, &node(name), &node(name + ".out")});
+      Operation{shared_from_this(), name, node_of(*found.in), node_of(*found.out)});
 }
 
 py::object Interface::exception(const std::string& name, std::span<const std::byte> members) const {

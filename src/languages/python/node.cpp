@@ -7,6 +7,26 @@ namespace skein::python {
 using types::DeclarationKind;
 using types::Kind;
 
+Classes& Classes::known() {
+  static auto& classes = *new Classes();
+  return classes;
+}
+
+bool is_true(const py::handle& object) {
+  const int truth = PyObject_IsTrue(object.ptr());
+  if (truth < 0) throw py::error_already_set();
+  return truth == 1;
+}
+
+std::int64_t label_number(const Node& discriminator, const py::handle& label) {
+  if (PyUnicode_Check(label.ptr()))
+    return static_cast<std::int64_t>(PyUnicode_READ_CHAR(label.ptr(), 0));
+  if (discriminator.type->kind == Kind::Boolean) return is_true(label) ? 1 : 0;
+  const auto number = py::reinterpret_steal<py::object>(PyNumber_Index(label.ptr()));
+  if (!number) throw py::error_already_set();
+  return static_cast<std::int64_t>(PyLong_AsUnsignedLongLongMask(number.ptr()));
+}
+
 const Node& Nodes::of(const idl::DynamicType& type) {
   auto& place = nodes_[&type];
   if (place) return *place;

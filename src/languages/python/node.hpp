@@ -27,6 +27,14 @@ struct Node {
   py::dict by_number{};
 };
 
+/// Classes of Python that values are made of: `array.array` and `skein.Reference`.
+struct Classes {
+  py::object array;
+  py::object reference;
+
+  static Classes& known();
+};
+
 /// Nodes of types, made when they are asked for. They live as long as this. Needs the GIL.
 class Nodes {
  public:
@@ -42,13 +50,18 @@ class Nodes {
   std::map<const idl::DynamicType*, std::unique_ptr<Node>> nodes_;
 };
 
-/// The value as CDR with its encapsulation header. Throws InvalidArgument, with the place, for what
-/// is no such value.
+/// Whether Python takes it for true. Throws what its `__bool__` throws.
+bool is_true(const py::handle& object);
+/// The number of a union's discriminator: a number, a bool, or a character.
+std::int64_t label_number(const Node& discriminator, const py::handle& label);
+
+/// The value as CDR with its encapsulation header. Throws InvalidArgument, with the place, if the
+/// value does not fit the type.
 Bytes encode(const Node& node, const py::handle& value);
 /// The same of the parameters, or the results, of an operation, which are given in their order.
 Bytes encode_members(const Node& node, const py::tuple& values);
 
-/// Throws InvalidArgument for what is no such message.
+/// Throws MalformedSample if the message is none of the type.
 py::object decode(const Node& node, std::span<const std::byte> cdr);
 py::tuple decode_members(const Node& node, std::span<const std::byte> cdr);
 

@@ -9,7 +9,7 @@ namespace {
 using OwnedProvider = Owned<skein_provider, skein_provider_free>;
 using OwnedReply = Owned<skein_reply, skein_reply_free>;
 
-/// What Python owes for one call.
+/// The pending reply to one call.
 class Reply {
  public:
   Reply(std::shared_ptr<Operation> operation, skein_reply handle)
@@ -39,9 +39,8 @@ class Reply {
   }
 
   bool cancelled() const {
-    bool cancelled = true;
-    refuse_after_fork();
-    skein_reply_cancelled(*handle_, &cancelled, sink());  // a reply that has ended is, too
+    bool cancelled = true;  // as one that has ended is
+    run([&](skein_error) { return skein_reply_cancelled(*handle_, &cancelled, {}) || true; });
     return cancelled;
   }
 
@@ -63,7 +62,7 @@ class Reply {
   template <class Function>
   void end(const Function& function) {
     run(function);
-    handle_ = {};  // a second answer is refused, and frees nothing
+    handle_.release();
   }
 
   static void call(void* user) {
@@ -90,7 +89,7 @@ struct Service {
 };
 
 void fail(skein_reply reply, skein_error_kind kind, const std::string& text) {
-  const py::gil_scoped_release unlocked;
+  const Unlocked unlocked;
   skein_reply_fail(reply, kind, text.c_str(), {});
 }
 

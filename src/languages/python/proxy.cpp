@@ -92,7 +92,7 @@ py::object call(const Proxy& proxy, const Operation& operation, const py::tuple&
     bool done = false;
     {
       const Interruptible wait([begun] { skein_call_cancel(begun, {}); });
-      const py::gil_scoped_release unlocked;
+      const Unlocked unlocked;
       done = skein_call_wait(begun, &result, sink());
     }
     if (!done) {
@@ -114,18 +114,14 @@ struct Told {
 void tell(const Told& told, const skein_value* value, skein_error error) {
   py::object result = py::none();
   py::object failure = py::none();
+  const auto* const known = told.operation->interface.get();
   try {
-    if (value) {
-      result = told.operation->decode_results(*value);
-    } else {
-      raise(*c::find<c::ErrorSink>(error)->last(), told.operation->interface.get());
+    try {
+      if (!value) raise(*c::find<c::ErrorSink>(error)->last(), known);
+      result = decoded([&] { return told.operation->decode_results(*value); });
+    } catch (py::error_already_set& thrown) {
+      failure = thrown.value();
     }
-  } catch (py::error_already_set& thrown) {
-    failure = thrown.value();
-  } catch (const std::exception& thrown) {
-    failure = py::module_::import("builtins").attr("ValueError")(thrown.what());
-  }
-  try {
     told.callback(result, failure);
   } catch (py::error_already_set& thrown) {
     thrown.discard_as_unraisable("a callback of Skein's");
@@ -169,7 +165,7 @@ struct Stream {
     refuse_after_fork();
     {
       const Interruptible wait([stream] { skein_stream_free(stream, {}); });
-      const py::gil_scoped_release unlocked;
+      const Unlocked unlocked;
       done = skein_stream_next(stream, &result, sink());
     }
     if (!done) {
@@ -229,7 +225,12 @@ void define_proxy(py::module_& module) {
       });
   py::class_<Stream, std::shared_ptr<Stream>>(module, "Stream")
       .def("next", &Stream::next)
-      .def("close", [](Stream& self) { self.handle.close(); });
+      .def("close", [](Stream& self) {
+        // Ctrl-C in next() may have freed it.
+        if (!self.handle.closed())
+          run([&](skein_error) { return skein_stream_free(*self.handle, {}) || true; });
+        self.handle.release();
+      });
 }
 
 }  // namespace skein::python

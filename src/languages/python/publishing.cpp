@@ -42,7 +42,7 @@ struct Publisher {
   }
 };
 
-/// One that was closed meanwhile ends the wait with an error.
+/// Whether all subscribers have what was published.
 struct Acknowledged {
   bool all = false;
 };
@@ -67,12 +67,9 @@ void on_value(void* user, const skein_value* value) {
   if (!entered) return;
   const auto& reader = *static_cast<Reader*>(user);
   try {
-    reader.callback(decode(*reader.node, bytes_of(*value)));
+    reader.callback(decoded([&] { return decode(*reader.node, bytes_of(*value)); }));
   } catch (py::error_already_set& thrown) {
     thrown.discard_as_unraisable("a callback of a subscription");
-  } catch (const std::exception& thrown) {
-    PyErr_SetString(PyExc_ValueError, thrown.what());
-    PyErr_WriteUnraisable(reader.callback.ptr());
   }
 }
 

@@ -126,7 +126,11 @@ PYBIND11_MODULE(_skein, module) {
   using namespace skein::python;
   module.doc() = "The native half of the package skein.";
   py::register_local_exception_translator(&translate);
-  module.def("set_error_classes", &set_error_classes);
+  module.attr("VERSION") = SKEIN_VERSION_TEXT;
+  module.def("set_classes", [](py::tuple errors, py::object array, py::object reference) {
+    set_error_classes(std::move(errors));
+    Classes::known() = {std::move(array), std::move(reference)};
+  });
   module.def("set_main_thread", &set_main_thread);
   module.def("forbid_after_fork", &forbid_after_fork);
   module.def("leave_python", &leave_python);

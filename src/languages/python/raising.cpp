@@ -40,7 +40,9 @@ void raise(const c::Failure& failure, const Interface* known) {
   } else {
     const auto kind = static_cast<std::size_t>(failure.kind);
     const py::object made = error_classes()[kind < error_classes().size() ? kind : 0];
-    PyErr_SetString(made.ptr(), failure.text.c_str());
+    const auto text = py::reinterpret_steal<py::object>(PyUnicode_DecodeUTF8(
+        failure.text.data(), static_cast<Py_ssize_t>(failure.text.size()), "replace"));
+    if (text) PyErr_SetObject(made.ptr(), text.ptr());
   }
   throw py::error_already_set();
 }

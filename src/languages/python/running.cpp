@@ -4,26 +4,39 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <vector>
 
 namespace skein::python {
 namespace {
 
-/// Threads of Skein's that are in Python.
+/// Threads that are in Python, though it is not theirs, or that have left it for Skein.
 struct Visitors {
   std::mutex mutex;
   std::condition_variable changed;
-  int inside = 0;
+  std::vector<unsigned long> inside;
+  int outside = 0;
   bool closed = false;
 
   static Visitors& all() {
     static auto& visitors = *new Visitors();
     return visitors;
   }
+
+  /// Under the lock.
+  bool wait(std::unique_lock<std::mutex>& lock) {
+    return changed.wait_for(lock, std::chrono::seconds(2),
+                            [this] { return inside.empty() && outside == 0; });
+  }
 };
+
+[[noreturn]] void wait_for_ever() {
+  for (;;) ::pause();
+}
 
 unsigned long main_thread = 0;
 
@@ -48,7 +61,7 @@ class SignalWatch {
       std::thread([this] { watch(); }).detach();
   }
 
-  /// Whoever sets a handler replaces this one.
+  /// Puts this handler before the present one. A later signal.signal() replaces it.
   void listen() {
     struct sigaction now {};
     ::sigaction(SIGINT, nullptr, &now);
@@ -88,12 +101,37 @@ class SignalWatch {
 
 }  // namespace
 
+Unlocked::Unlocked() : state_(PyEval_SaveThread()) {
+  auto& visitors = Visitors::all();
+  std::lock_guard lock(visitors.mutex);
+  ++visitors.outside;
+}
+
+Unlocked::~Unlocked() {
+  auto& visitors = Visitors::all();
+  const bool main = is_main_thread();
+  {
+    std::unique_lock lock(visitors.mutex);
+    if (visitors.closed && !main) {
+      --visitors.outside;
+      std::erase(visitors.inside, PyThread_get_thread_ident());
+      visitors.changed.notify_all();
+      lock.unlock();
+      wait_for_ever();
+    }
+  }
+  PyEval_RestoreThread(state_);
+  std::lock_guard lock(visitors.mutex);
+  --visitors.outside;
+  visitors.changed.notify_all();
+}
+
 Entered::Entered() {
   auto& visitors = Visitors::all();
   {
     std::lock_guard lock(visitors.mutex);
     if (visitors.closed || is_forked()) return;
-    ++visitors.inside;
+    visitors.inside.push_back(PyThread_get_thread_ident());
   }
   state_ = PyGILState_Ensure();
 }
@@ -103,15 +141,24 @@ Entered::~Entered() {
   PyGILState_Release(*state_);
   auto& visitors = Visitors::all();
   std::lock_guard lock(visitors.mutex);
-  if (--visitors.inside == 0) visitors.changed.notify_all();
+  visitors.inside.erase(std::ranges::find(visitors.inside, PyThread_get_thread_ident()));
+  visitors.changed.notify_all();
 }
 
-void leave_python() {
-  const py::gil_scoped_release unlocked;
+bool leave_python() {
   auto& visitors = Visitors::all();
+  std::vector<unsigned long> late;
+  {
+    const py::gil_scoped_release unlocked;
+    std::unique_lock lock(visitors.mutex);
+    visitors.closed = true;
+    if (visitors.wait(lock)) return true;
+    late = visitors.inside;
+  }
+  for (const unsigned long thread : late) PyThreadState_SetAsyncExc(thread, PyExc_SystemExit);
+  const py::gil_scoped_release unlocked;
   std::unique_lock lock(visitors.mutex);
-  visitors.closed = true;
-  visitors.changed.wait_for(lock, std::chrono::seconds(2), [&] { return visitors.inside == 0; });
+  return visitors.wait(lock);
 }
 
 bool is_main_thread() { return PyThread_get_thread_ident() == main_thread; }
@@ -119,7 +166,14 @@ bool is_main_thread() { return PyThread_get_thread_ident() == main_thread; }
 void set_main_thread(unsigned long identity) { main_thread = identity; }
 
 Interruptible::Interruptible(std::function<void()> interrupt) : main_(is_main_thread()) {
-  if (main_) SignalWatch::instance().set(std::move(interrupt));
+  if (!main_) return;
+  SignalWatch::instance().set(std::move(interrupt));
+  try {
+    handle_signals();
+  } catch (...) {
+    SignalWatch::instance().set(nullptr);
+    throw;
+  }
 }
 
 Interruptible::~Interruptible() {

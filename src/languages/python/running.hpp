@@ -34,16 +34,23 @@ void drop(void* user) {
   if (entered) delete static_cast<User*>(user);
 }
 
-/// No thread of Skein's enters Python any more. Waits for those that are there, without the GIL, at
-/// most 2 s.
-void leave_python();
+/// No thread of Skein's enters Python any more, and none comes back to it. Waits for those that are
+/// there, without the GIL, at most 2 s; then throws SystemExit in them, and waits again. Whether
+/// all have left: the interpreter cannot end otherwise.
+bool leave_python();
+
+/// Runs the handlers of signals that have come, and throws what they throw: KeyboardInterrupt.
+inline void handle_signals() {
+  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+}
 
 /// Whether this is the thread on which Python handles signals.
 bool is_main_thread();
 void set_main_thread(unsigned long identity);
 
 /// While it lives, SIGINT (Ctrl-C) calls `interrupt`, once, on another thread, if Python has a
-/// handler for it. For the main thread; does nothing on others.
+/// handler for it. For the main thread; does nothing on others. Throws what the handler of an
+/// earlier signal throws.
 class Interruptible {
  public:
   explicit Interruptible(std::function<void()> interrupt);
@@ -54,11 +61,6 @@ class Interruptible {
  private:
   const bool main_;
 };
-
-/// Runs the handlers of signals that have come, and throws what they throw: KeyboardInterrupt.
-inline void handle_signals() {
-  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-}
 
 /// As run(), for a function that cannot be told to end: on the main thread Ctrl-C ends the wait,
 /// and the function goes on to its own end elsewhere. It must own what it uses, and its result must
@@ -89,7 +91,7 @@ Result wait_for(const std::function<bool(Result&, skein_error)>& function,
   }).detach();
   for (bool ended = false; !ended;) {
     {
-      const py::gil_scoped_release unlocked;
+      const Unlocked unlocked;
       std::unique_lock lock(state->mutex);
       ended = state->changed.wait_for(lock, std::chrono::milliseconds(50),
                                       [&] { return state->ended; });

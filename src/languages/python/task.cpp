@@ -15,15 +15,16 @@ struct Judges {
 /// What one of them says of a result, as `convert` makes it; `otherwise` if it fails.
 template <class Value, class Convert>
 Value judge(const Judges& judges, const py::object& function, const skein_value* result,
-            Value otherwise, const Convert& convert) {
+            Value otherwise, const Convert& convert, skein_error reason = {}) {
   const Entered entered;
   if (!entered) return otherwise;
   try {
-    return convert(function(judges.operation->decode_results(*result)));
+    return convert(function(decoded([&] { return judges.operation->decode_results(*result); })));
   } catch (py::error_already_set& thrown) {
+    skein_error_set(reason, SKEIN_INTERNAL, thrown.what());
     thrown.discard_as_unraisable("a function that judges the results of a task");
-  } catch (const std::exception&) {
-    // A result that is no such value, or a number that is none.
+  } catch (const py::cast_error& wrong) {
+    skein_error_set(reason, SKEIN_INTERNAL, wrong.what());
   }
   return otherwise;
 }
@@ -31,11 +32,14 @@ Value judge(const Judges& judges, const py::object& function, const skein_value*
 /// Python's function returns True, or why the result is not accepted: a str, or False.
 bool evaluate(void* user, const skein_value* result, skein_error reason) {
   const auto& judges = *static_cast<Judges*>(user);
-  return judge(judges, judges.evaluate, result, false, [&](const py::object& said) {
-    if (!PyUnicode_Check(said.ptr())) return PyObject_IsTrue(said.ptr()) == 1;
-    skein_error_set(reason, SKEIN_INTERNAL, py::cast<std::string>(said).c_str());
+  const auto is_accepted = [&](const py::object& said) {
+    if (!PyUnicode_Check(said.ptr()) && !said.is_none()) return is_true(said);
+    skein_error_set(reason, SKEIN_INTERNAL,
+                    said.is_none() ? "evaluate() returned None; return True, or why not"
+                                   : py::cast<std::string>(said).c_str());
     return false;
-  });
+  };
+  return judge(judges, judges.evaluate, result, false, is_accepted, reason);
 }
 
 double number_of(const py::object& said) { return py::cast<double>(said); }

@@ -51,8 +51,7 @@ py::object text_of(const std::string& text) {
 }
 
 py::object array_of(char code, const py::object& bytes) {
-  static const auto& made = *new py::object(py::module_::import("array").attr("array"));
-  return made(py::str(&code, 1), bytes);
+  return Classes::known().array(py::str(&code, 1), bytes);
 }
 
 /// Reads what the library has checked and put into this side's version: all members, in their
@@ -88,7 +87,7 @@ class ValueReader {
       case Kind::OptionalMember:
         return reader_.read<bool>() ? value(*node.parts[0]) : py::none();
       case Kind::Reference:
-        return reference(node);
+        return reference();
       case Kind::Declared:
         return declared(node);
       default:
@@ -159,13 +158,13 @@ class ValueReader {
     return dict;
   }
 
-  py::object reference(const Node&) {
-    static const auto& made = *new py::object(py::module_::import("skein").attr("Reference"));
+  py::object reference() {
     ServiceReference read;
     idl::decode(reader_, read);
     const py::bytes provider(reinterpret_cast<const char*>(read.provider.bytes.data()),
                              read.provider.bytes.size());
-    return made(text_of(read.interface_name), provider, text_of(read.instance));
+    return Classes::known().reference(text_of(read.interface_name), provider,
+                                      text_of(read.instance));
   }
 
   py::object declared(const Node& node) {
@@ -254,21 +253,14 @@ class ValueReader {
   }
 
   void switched(const Node& node, bool by_identifier, const py::object& object) {
-    static const auto& discriminator = *new py::str("discriminator");
-    static const auto& held = *new py::str("value");
+    const py::str discriminator("discriminator");
+    const py::str held("value");
     const py::object label = with_header(by_identifier, [&] { return value(*node.parts.back()); });
     set(object, discriminator, label);
-    const auto* const selected = node.type->selected(label_number(label));
+    const auto* const selected = node.type->selected(label_number(*node.parts.back(), label));
     if (!selected) return set(object, held, py::none());
     const auto at = static_cast<std::size_t>(selected - node.type->members.data());
     set(object, held, with_header(by_identifier, [&] { return value(*node.parts[at]); }));
-  }
-
-  static std::int64_t label_number(const py::object& label) {
-    if (PyUnicode_Check(label.ptr()))
-      return static_cast<std::int64_t>(PyUnicode_READ_CHAR(label.ptr(), 0));
-    const py::object number = owned(PyNumber_Index(label.ptr()));
-    return static_cast<std::int64_t>(PyLong_AsUnsignedLongLongMask(number.ptr()));
   }
 
   CdrReader& reader_;
@@ -294,7 +286,7 @@ py::object decode(const Node& node, std::span<const std::byte> cdr) {
 
 py::tuple decode_members(const Node& node, std::span<const std::byte> cdr) {
   py::tuple values(node.parts.size());
-  if (node.parts.empty() || cdr.empty()) return values;
+  if (node.parts.empty()) return values;
   read_message(node, cdr, [&](ValueReader& reader) {
     reader.members(node, false, [&](std::size_t i, py::object value) {
       PyTuple_SET_ITEM(values.ptr(), static_cast<Py_ssize_t>(i), value.release().ptr());

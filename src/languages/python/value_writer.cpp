@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "idl/types/primitive_kind.hpp"
 #include "node.hpp"
@@ -21,12 +22,21 @@ using types::DeclarationKind;
 using types::Extensibility;
 using types::Kind;
 
+/// At most so many characters of what repr() says; of a long container its length alone.
+std::string repr_of(const py::handle& given, std::size_t longest) {
+  const Py_ssize_t size = PyUnicode_Check(given.ptr()) ? 0 : PyObject_Size(given.ptr());
+  PyErr_Clear();
+  if (size > 30) return std::to_string(size) + " elements";
+  const py::str text = py::repr(given);
+  if (py::len(text) <= longest) return py::cast<std::string>(text);
+  return py::cast<std::string>(text[py::slice(0, static_cast<py::ssize_t>(longest), 1)]) + "...";
+}
+
 [[noreturn]] void refuse_value(const std::string& place, const std::string& wanted,
                                const py::handle& given) {
   PyErr_Clear();
-  std::string shown = py::cast<std::string>(py::repr(given));
   constexpr std::size_t kLongest = 60;
-  if (shown.size() > kLongest) shown = shown.substr(0, kLongest) + "...";
+  const std::string shown = repr_of(given, kLongest);
   throw InvalidArgument(place + " takes " + wanted + ", and was given " + shown + ", of type " +
                         Py_TYPE(given.ptr())->tp_name);
 }
@@ -53,6 +63,11 @@ class Numbers {
   bool fits() const noexcept { return fits_; }
   const void* data() const noexcept { return view_.buf; }
   std::size_t size() const noexcept { return static_cast<std::size_t>(view_.len / view_.itemsize); }
+  /// Its extents, the outermost first.
+  std::vector<std::size_t> shape() const {
+    if (view_.ndim == 0) return {};
+    return {view_.shape, view_.shape + view_.ndim};
+  }
 
  private:
   bool has_format(Kind kind) const {
@@ -87,7 +102,7 @@ class ValueWriter {
       case Kind::LongDouble:
         return writer_.write_long_double(number(given, place));
       case Kind::Float:
-        return writer_.write(static_cast<float>(number(given, place)));
+        return single(given, place);
       case Kind::Double:
         return writer_.write(number(given, place));
       case Kind::String:
@@ -129,7 +144,7 @@ class ValueWriter {
   void boolean(const py::handle& given, const std::string& place) {
     const bool of_numpy = std::string_view(Py_TYPE(given.ptr())->tp_name).starts_with("numpy.bool");
     if (!PyBool_Check(given.ptr()) && !of_numpy) refuse_value(place, "True or False", given);
-    writer_.write(PyObject_IsTrue(given.ptr()) == 1);
+    writer_.write(is_true(given));
   }
 
   static Py_UCS4 character(const py::handle& given, Py_UCS4 greatest, const std::string& place) {
@@ -145,6 +160,13 @@ class ValueWriter {
     const double read = PyFloat_AsDouble(given.ptr());
     if (read == -1 && PyErr_Occurred()) refuse_value(place, "a number", given);
     return read;
+  }
+
+  void single(const py::handle& given, const std::string& place) {
+    const double wide = number(given, place);
+    if (std::isfinite(wide) && std::abs(wide) > std::numeric_limits<float>::max())
+      refuse_value(place, "a number that a float can hold", given);
+    writer_.write(static_cast<float>(wide));
   }
 
   template <class Number>
@@ -200,7 +222,7 @@ class ValueWriter {
   /// A list or a tuple of the elements.
   static py::object elements_of(const py::handle& given, const std::string& place) {
     PyObject* const object = given.ptr();
-    const bool text = PyUnicode_Check(object) || PyDict_Check(object);
+    const bool text = PyUnicode_Check(object) || PyBytes_Check(object) || PyDict_Check(object);
     if (text || PySequence_Check(object) == 0) refuse_value(place, "a list", given);
     auto elements = py::reinterpret_steal<py::object>(PySequence_Fast(object, ""));
     if (!elements) throw py::error_already_set();
@@ -211,12 +233,12 @@ class ValueWriter {
     const Node& element = *node.parts[0];
     const CdrWriter::Delimiter delimiter(
         writer_, writer_.is_xcdr2() && element.type->is_delimited_element());
-    if (numbers(element, given, place, [&](std::size_t count) {
-          if (node.type->bound > 0) writer_.check_bound(count, node.type->bound, place.c_str());
-          writer_.write_length(count);
-        })) {
-      return;
-    }
+    const auto begin = [&](const std::vector<std::size_t>& shape) {
+      if (shape.size() != 1) refuse_value(place, "one dimension", given);
+      if (node.type->bound > 0) writer_.check_bound(shape[0], node.type->bound, place.c_str());
+      writer_.write_length(shape[0]);
+    };
+    if (numbers(element, given, place, begin)) return;
     const py::object elements = elements_of(given, place);
     const auto count = static_cast<std::size_t>(PySequence_Fast_GET_SIZE(elements.ptr()));
     if (node.type->bound > 0) writer_.check_bound(count, node.type->bound, place.c_str());
@@ -224,7 +246,7 @@ class ValueWriter {
     each(element, elements, place);
   }
 
-  /// Copies the elements of a buffer at once; `begin` gets their number. False if that cannot be.
+  /// Copies the elements of a buffer at once; `begin` gets its shape. False if that cannot be.
   template <class Begin>
   bool numbers(const Node& element, const py::handle& given, const std::string& place,
                const Begin& begin) {
@@ -233,7 +255,7 @@ class ValueWriter {
     if (kind == Kind::Octet && PyUnicode_Check(given.ptr())) refuse_value(place, "bytes", given);
     const Numbers buffer(given, kind);
     if (!buffer.fits()) return false;
-    begin(buffer.size());
+    begin(buffer.shape());
     idl::with_primitive(kind, [&](auto zero) {
       writer_.write_array(static_cast<const decltype(zero)*>(buffer.data()), buffer.size());
     });
@@ -251,12 +273,29 @@ class ValueWriter {
   /// Arrays of arrays are one array on the wire.
   void array(const Node& node, const py::handle& given, const std::string& place) {
     const Node* item = &node;
-    std::size_t count = 1;
-    for (; item->type->kind == Kind::Array; item = item->parts[0]) count *= item->type->bound;
+    for (; item->type->kind == Kind::Array;) item = item->parts[0];
     const CdrWriter::Delimiter delimiter(writer_,
                                          writer_.is_xcdr2() && item->type->is_delimited_element());
-    const auto expect = [&](std::size_t size) { expect_size(size, count, place); };
-    if (!numbers(*item, given, place, expect)) rows(node, given, place);
+    rows(node, *item, given, place);
+  }
+
+  void rows(const Node& node, const Node& item, const py::handle& given, const std::string& place) {
+    const auto expect = [&](const std::vector<std::size_t>& shape) {
+      const Node* level = &node;
+      for (const std::size_t size : shape) {
+        if (level->type->kind != Kind::Array) refuse_value(place, "fewer dimensions", given);
+        expect_size(size, level->type->bound, place);
+        level = level->parts[0];
+      }
+      if (level->type->kind == Kind::Array) refuse_value(place, "more dimensions", given);
+    };
+    if (numbers(item, given, place, expect)) return;
+    const py::object elements = elements_of(given, place);
+    expect_size(static_cast<std::size_t>(PySequence_Fast_GET_SIZE(elements.ptr())),
+                node.type->bound, place);
+    const Node& element = *node.parts[0];
+    if (element.type->kind != Kind::Array) return each(element, elements, place);
+    for (const py::handle row : elements) rows(element, item, row, place);
   }
 
   static void expect_size(std::size_t size, std::size_t wanted, const std::string& place) {
@@ -265,19 +304,10 @@ class ValueWriter {
                           std::to_string(size));
   }
 
-  void rows(const Node& node, const py::handle& given, const std::string& place) {
-    const Node& element = *node.parts[0];
-    const auto expect = [&](std::size_t size) { expect_size(size, node.type->bound, place); };
-    if (numbers(element, given, place, expect)) return;
-    const py::object elements = elements_of(given, place);
-    expect(static_cast<std::size_t>(PySequence_Fast_GET_SIZE(elements.ptr())));
-    if (element.type->kind != Kind::Array) return each(element, elements, place);
-    for (const py::handle row : elements) rows(element, row, place);
-  }
-
   void map(const Node& node, const py::handle& given, const std::string& place) {
     if (!PyDict_Check(given.ptr())) refuse_value(place, "a dict", given);
-    const auto dict = py::reinterpret_borrow<py::dict>(given);
+    // A copy: code of Python's may change it while it is written.
+    const auto dict = py::reinterpret_steal<py::dict>(PyDict_Copy(given.ptr()));
     if (node.type->bound > 0) writer_.check_bound(dict.size(), node.type->bound, place.c_str());
     const CdrWriter::Delimiter delimiter(writer_, writer_.is_xcdr2());
     writer_.write_length(dict.size());
@@ -380,7 +410,7 @@ class ValueWriter {
 
   static std::uint64_t field_bits(const types::BitField& field, const py::handle& given,
                                   const std::string& place) {
-    if (field.kind == Kind::Boolean) return PyObject_IsTrue(given.ptr()) == 1 ? 1 : 0;
+    if (field.kind == Kind::Boolean) return is_true(given) ? 1 : 0;
     const unsigned width = field.width;
     if (idl::is_unsigned(field.kind)) {
       const auto number = integer<std::uint64_t>(given, place);
@@ -396,25 +426,18 @@ class ValueWriter {
 
   void switched(const Node& node, const py::handle& given, bool by_identifier,
                 const std::string& place) {
-    static const auto& discriminator = *new py::str("discriminator");
-    static const auto& held = *new py::str("value");
+    const py::str discriminator("discriminator");
+    const py::str held("value");
     const py::object label = attribute(node, discriminator, given, place);
     {
       const CdrWriter::Delimiter length =
           by_identifier ? writer_.member(0, true) : CdrWriter::Delimiter(writer_, false);
       value(*node.parts.back(), label, place + ".discriminator");
     }
-    const auto* const selected = node.type->selected(label_number(label));
+    const auto* const selected = node.type->selected(label_number(*node.parts.back(), label));
     if (!selected) return;
     const auto at = static_cast<std::size_t>(selected - node.type->members.data());
     member(node, at, attribute(node, held, given, place), by_identifier);
-  }
-
-  static std::int64_t label_number(const py::handle& label) {
-    if (PyUnicode_Check(label.ptr()))
-      return static_cast<std::int64_t>(PyUnicode_READ_CHAR(label.ptr(), 0));
-    const auto number = py::reinterpret_steal<py::object>(PyNumber_Index(label.ptr()));
-    return static_cast<std::int64_t>(PyLong_AsUnsignedLongLongMask(number.ptr()));
   }
 
   CdrWriter& writer_;
@@ -423,7 +446,6 @@ class ValueWriter {
 template <class Write>
 Bytes message_of(const Node& node, const Write& write) {
   Bytes message{std::span<const std::byte>(encapsulation(node.type->representation))};
-  message.reserve(256);
   idl::append_cdr(message, [&](CdrWriter& writer) {
     ValueWriter values(writer);
     write(values);

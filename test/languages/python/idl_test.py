@@ -49,13 +49,18 @@ def resolved(module, name):
 def compiled(path, folder):
     """The module, and the names of the classes in its stub; None for what the compiler refuses for every language."""
     command = [*COMPILER, "--out", folder, "-I", os.path.join(ROOT, "idl"), "-I", os.path.dirname(path), path]
-    if subprocess.run(command, capture_output=True, check=False).returncode != 0:
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        if "Traceback" in done.stderr:
+            raise AssertionError(done.stderr)
         return None
     (source,) = glob.glob(os.path.join(folder, "**", "*.py"), recursive=True)
     module = types.ModuleType(os.path.basename(source).removesuffix(".py"))
     with open(source, encoding="utf-8") as code, open(source + "i", encoding="utf-8") as stub:
         exec(compile(code.read(), source, "exec"), module.__dict__)
-        return module, list(names_of(ast.parse(stub.read()).body))
+        text = stub.read()
+        compile(text, source + "i", "exec")
+        return module, list(names_of(ast.parse(text).body))
 
 
 class Every(unittest.TestCase):

@@ -11,7 +11,7 @@ import threading
 import unittest
 
 import skein
-from tools import CLIENT, HERE, INSIDE, PATIENCE, PROVIDES, SERVER, Buoy, Peer, entity, eventually, harbour
+from tools import CLIENT, INSIDE, PATIENCE, PROVIDES, SERVER, Buoy, Peer, entity, eventually, harbour, odd
 
 try:
     import numpy
@@ -34,6 +34,60 @@ class Harbour(unittest.TestCase):
     def refused(self, error, text, function, *arguments, **named):
         with self.assertRaisesRegex(error, text):
             function(*arguments, **named)
+
+
+class Odd(unittest.TestCase):
+    """Names and values that Python needs care with: odd.idl."""
+
+    def test_names_of_pythons_are_kept_apart(self):
+        self.assertEqual((odd.TOWN, odd.BOTH), ("Zürich", odd.Marks.first | odd.Marks.second))
+        self.assertEqual((odd.Either(value_=5).value, odd.Either(discriminator_="x").value), (5, "x"))
+        self.assertRaises(TypeError, odd.Either, None, 5)
+        self.assertEqual(odd.Self(self=3).marks, odd.BOTH)
+        self.assertTrue(issubclass(odd.skein.IDerived.Proxy, odd.IBase.Proxy))
+        self.assertIsNot(odd.skein, skein)
+
+    def test_a_derived_interface_serves_as_its_base(self):
+        told = []
+
+        class Derived(odd.skein.IDerived):
+            def ping(self, count):
+                raise odd.Lost("at sea")
+
+            def get_x(self, a):
+                return a
+
+            def get_x_(self):
+                return 7
+
+            def set_x(self, x):
+                told.append(x)
+
+            def back(self, self_):
+                return self_
+
+            def count(self):
+                return range(3)
+
+            async def tell(self, what):
+                raise ValueError(what)
+
+        async def serve():
+            with skein.Entity("odd", vendor="loopback") as own, skein.Entity("other", vendor="loopback") as other:
+                own.provide(Derived())
+                base = await other.async_connect(odd.IBase)
+                with self.assertRaisesRegex(odd.Lost, "at sea"):
+                    await base.ping(1)
+                self.assertEqual(await base.get_x(), 7)
+                derived = await other.async_connect(odd.skein.IDerived)
+                self.assertEqual((await derived.get_x(3), await derived.get_x_()), (3, 7))
+                value = odd.Self(1, 2, True, odd.Marks.second, b"x")
+                self.assertEqual(await derived.back(value), value)
+                with self.assertLogs("skein", "ERROR"):
+                    await derived.tell("x")
+                    await asyncio.to_thread(eventually, lambda: False, 0.1)
+
+        asyncio.run(serve())
 
 
 class Values(unittest.TestCase):
@@ -80,6 +134,10 @@ class Values(unittest.TestCase):
             (harbour.Cargo(sides=[[1, 2], [3, 4]]), "takes 3 elements, and was given 2"),
             (harbour.Cargo(mark="xy"), "a str of one character"),
             (harbour.Cargo(fragile=1), "True or False"),
+            (harbour.Cargo(sides=array.array("d", [1] * 6)), "takes 2 elements, and was given 6"),
+            (harbour.Cargo(sides=memoryview(bytes(48)).cast("d", (3, 2))), "takes 2 elements, and was given 3"),
+            (harbour.Depth(["ä" * 100] * 40), "was given 40 elements, of type list"),
+            (harbour.Depth(b"\xc3" * 100), "takes a str"),
             (harbour.Cargo(seal=harbour.Seal(8, 0)), r"harbour::Cargo.seal.ring takes an int of 3 bits"),
             (harbour.Cargo(content=harbour.Content(label="x" * 41)), "label"),
             (harbour.Cargo(content="x"), "takes a harbour::Content"),
@@ -237,7 +295,7 @@ class Calls(Harbour):
 
     def test_what_a_task_gives_up_is_cancelled_at_its_provider(self):
         ended = []
-        self.buoy.after = lambda ms: ended.append(Buoy.after(self.buoy, ms))
+        self.buoy.after = lambda ms: ended.append(ms) or Buoy.after(self.buoy, ms)
 
         async def impatient():
             buoy = await self.client.async_connect(harbour.IBuoy)
@@ -270,6 +328,8 @@ class Calls(Harbour):
         buoy = self.connect()
         with concurrent.futures.ThreadPoolExecutor(8) as pool:
             self.assertEqual(set(pool.map(buoy.greet, ["you"] * 400)), {"Ahoy, you"})
+        with self.assertRaises(AttributeError):
+            buoy.knots = 3
         buoy.close()
         self.assertFalse(buoy.connected)
         self.assertRaises(skein.Error, buoy.greet, "you")
@@ -296,7 +356,7 @@ class Services(Harbour):
         self.refused(skein.Overloaded, "not now", buoy.greet, "late")
         with self.assertLogs("skein", "ERROR"):
             self.refused(skein.Internal, "KeyError: 'x'", buoy.greet, "bug")
-        self.refused(skein.InvalidArgument, "Fog is no exception that the operation declares", buoy.greet, "fog")
+            self.refused(skein.Internal, "Fog is no exception that the operation declares", buoy.greet, "fog")
 
     def test_a_result_that_is_none_is_an_error_of_the_service(self):
         class Wrong(Buoy):
@@ -307,8 +367,9 @@ class Services(Harbour):
                 return harbour.Wind()
 
         buoy = self.answer(Wrong())
-        self.refused(skein.InvalidArgument, "takes a str, and was given 3", buoy.greet, "x")
-        self.refused(skein.InvalidArgument, "has 2 results: return them as a tuple", buoy.wind, 1, 1)
+        with self.assertLogs("skein", "ERROR"):
+            self.refused(skein.Internal, "takes a str, and was given 3", buoy.greet, "x")
+            self.refused(skein.Internal, "has 2 results: return them as a tuple", buoy.wind, 1, 1)
 
     def test_a_class_that_lacks_an_operation_is_refused(self):
         class Greet(harbour.IBuoy):
@@ -317,6 +378,7 @@ class Services(Harbour):
 
         self.refused(skein.InvalidArgument, "lacks wind, greet, forget, gusts, after", self.server.provide, Greet())
         self.refused(skein.InvalidArgument, "derives from no IDL interface", self.server.provide, object())
+        self.refused(skein.InvalidArgument, "give an object of it, Buoy\\(\\)", self.server.provide, Buoy)
 
     def test_an_answer_that_nobody_can_give_any_more_is_an_error(self):
         class Forgetful(Buoy):
@@ -354,7 +416,49 @@ class Services(Harbour):
             self.assertEqual([gust.force async for gust in buoy.gusts(3)], [0, 1, 2])
 
         asyncio.run(serve())
-        self.refused(skein.InvalidArgument, "needs the event loop", self.answer(Polite()).greet, "you")
+        self.refused(skein.InvalidArgument, "without a running event loop", self.server.provide, Polite())
+
+    def test_what_nobody_waits_for_is_cancelled_and_occupies_no_thread(self):
+        begun, cancelled = threading.Event(), []
+
+        class Slow(Buoy):
+            async def wait(self, what):
+                begun.set()
+                try:
+                    await asyncio.Event().wait()
+                finally:
+                    cancelled.append(what)
+
+            async def greet(self, name):
+                return name if name else await self.wait("greet")
+
+            async def gusts(self, count):
+                yield harbour.Wind(count)
+                await self.wait("gusts")
+
+        async def serve():
+            provider = self.server.provide(Slow())
+            buoy = (await self.client.async_connect(harbour.IBuoy, provider=provider.identity)).within(PATIENCE)
+            waiting = asyncio.ensure_future(buoy.greet(""))
+            await asyncio.to_thread(begun.wait, PATIENCE)
+            waiting.cancel()
+            async for gust in buoy.gusts(3):
+                self.assertEqual(gust.force, 3)
+                break
+            self.assertEqual(await buoy.greet("you"), "you")
+            self.assertTrue(await asyncio.to_thread(eventually, lambda: set(cancelled) == {"greet", "gusts"}))
+
+        asyncio.run(serve())
+
+    def test_a_stream_that_fails_is_not_complete(self):
+        class Failing(Buoy):
+            def gusts(self, count):
+                yield harbour.Wind()
+                raise skein.Cancelled("inside")
+
+        gusts = self.answer(Failing()).gusts(3)
+        next(gusts)
+        self.refused(skein.Cancelled, "inside", next, gusts)
 
     def test_a_reference_leads_to_its_service(self):
         reference = self.server.provide(Buoy()).reference
@@ -394,6 +498,9 @@ class Tasks(Harbour):
         self.refused(skein.Internal, "never", perform, harbour.IBuoy, "wind", 3, 1.0, evaluate=lambda result: "never")
         other = self.enterContext(entity("other", CLIENT))
         self.refused(skein.Unavailable, "", other.perform, harbour.IBuoy, "wind", 3, 1.0, limit=0.2)
+        self.refused(skein.Internal, "returned None", perform, harbour.IBuoy, "wind", 3, 1.0, evaluate=lambda result: None)
+        self.refused(skein.Internal, "ZeroDivisionError", perform, harbour.IBuoy, "wind", 3, 1.0, evaluate=lambda result: 1 / 0)
+        self.refused(TypeError, "wind\\(level, at\\) lacks at", perform, harbour.IBuoy, "wind", 3)
         self.refused(skein.InvalidArgument, "no operation 'wnd'; it has wind", perform, harbour.IBuoy, "wnd")
         self.refused(skein.InvalidArgument, "take one, staggered, all", perform, harbour.IBuoy, "wind", 3, 1.0, execution="some")
 
@@ -413,6 +520,13 @@ class Topics(Harbour):
         waiting.close()
         self.assertEqual([depth.depth_m for depth in waiting], [3.0, 4.0])
         self.assertIsNone(waiting.take(0.01))
+
+    def test_the_end_of_an_entity_ends_iterations(self):
+        subscription = self.client.subscribe(harbour.Depth, "depth")
+        with concurrent.futures.ThreadPoolExecutor() as pool:
+            left = pool.submit(list, subscription)
+            self.client.close()
+            self.assertEqual(left.result(PATIENCE), [])
 
     def test_a_topics_type_is_learned_from_who_uses_it(self):
         depths = self.server.publisher(harbour.Depth, "depth")
@@ -464,6 +578,10 @@ class Lives(Harbour):
                 held.pop()
                 gc.collect()
             self.assertTrue(all(eventually(call.done) for call in calls))
+        with self.assertLogs("skein", "WARNING") as told:
+            entity("careless", SERVER).provide(Buoy())
+            gc.collect()
+        self.assertIn("'careless' ends with its services", told.output[0])
 
     def test_ctrl_c_ends_every_wait(self):
         for wait in (
@@ -475,6 +593,7 @@ class Lives(Harbour):
             "next(own.subscribe(harbour.Depth, 'depth'))",
             "own.perform(harbour.IBuoy, 'after', 50_000)",
             "asyncio.run(asyncio.wait_for(asyncio.Event().wait(), 60))",
+            "asyncio.run(own.async_connect(harbour.IReporter, timeout=60))",
         ):
             script = f"""
 import asyncio, threading
@@ -501,6 +620,42 @@ with entity("own", "loopback") as own, entity("other", "loopback") as other:
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             self.assertEqual(self.run_script(script, number), 4)
         self.assertFalse(skein.wait(0.01))
+        script = "import asyncio, threading; threading.Timer(0.1, print, ['now'], {'flush': True}).start(); asyncio.run(skein.async_wait()); sys.exit(4)"
+        self.assertEqual(self.run_script(script, signal.SIGTERM), 4)
+
+        async def wrong():
+            skein.wait()
+
+        self.refused(skein.InvalidArgument, "await skein.async_wait", asyncio.run, wrong())
+
+    def test_a_process_may_end_while_threads_go_on(self):
+        script = """
+import threading
+own, other = entity("own", "loopback"), entity("other", "loopback")
+class Busy(Buoy):
+    def after(self, ms):
+        print("called", flush=True)
+        while True:
+            pass
+other.provide(Busy(), threads=4)
+buoy = own.connect(harbour.IBuoy)
+def stubborn():
+    while True:
+        try:
+            buoy.greet("you")
+        except skein.Error:
+            pass
+for _ in range(3):
+    threading.Thread(target=stubborn, daemon=True).start()
+if sys.argv[1:]:
+    buoy.asynchronous.after(60_000)
+    sys.stdin.read()
+sys.exit(6)
+"""
+        for _ in range(5):
+            self.assertEqual(self.run_script(script), 6)
+        with Peer.python(script, "busy") as peer:
+            self.assertEqual(peer.expect("called").end(), 6)
 
     def test_a_process_may_end_with_all_of_it_alive(self):
         script = """

@@ -11,7 +11,8 @@ import time
 import skein
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-harbour = skein.load(os.path.join(HERE, "..", "c", "buoy.idl")).harbour
+harbour = skein.load("../c/buoy.idl").harbour
+odd = skein.load("odd.idl")
 SERVER, CLIENT = os.environ.get("SKEIN_PAIRING", "loopback:loopback").split(":")
 INSIDE = "loopback" in (SERVER, CLIENT)  # all entities are in one process
 PATIENCE = 30

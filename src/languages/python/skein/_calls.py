@@ -1,9 +1,10 @@
-"""What asynchronous calls and streams are in Python."""
+"""Asynchronous calls, and streams."""
 
 from __future__ import annotations
 
 import asyncio
 import concurrent.futures
+import threading
 from collections.abc import AsyncIterator, Generator, Iterator
 from typing import Any, Callable, Generic, Optional, TypeVar
 
@@ -41,6 +42,33 @@ class Call(concurrent.futures.Future[T]):
         return asyncio.wrap_future(self).__await__()
 
 
+_END = object()
+
+
+async def in_thread(function: Callable[[], T]) -> T:
+    """Waits for a function in a thread of its own, which the end of the loop does not wait for."""
+    loop = asyncio.get_running_loop()
+    ended: asyncio.Future[T] = loop.create_future()
+
+    def tell(settle: Callable[[Any], None], outcome: Any) -> None:
+        if not ended.done():
+            settle(outcome)
+
+    def run() -> None:
+        try:
+            outcome: Any = function()
+            settle: Any = ended.set_result
+        except BaseException as error:
+            outcome, settle = error, ended.set_exception
+        try:
+            loop.call_soon_threadsafe(tell, settle, outcome)
+        except RuntimeError:
+            pass  # the loop has ended
+
+    threading.Thread(target=run, daemon=True, name="skein-wait").start()
+    return await ended
+
+
 class Stream(Generic[T]):
     """The results of an operation under `@stream`: `for` waits for each, `async for` does so in asyncio. close() cancels the rest."""
 
@@ -58,10 +86,8 @@ class Stream(Generic[T]):
         return self._items()
 
     async def _items(self) -> AsyncIterator[T]:
-        end = object()
-        loop = asyncio.get_running_loop()
         try:
-            while (item := await loop.run_in_executor(None, next, self, end)) is not end:
+            while (item := await in_thread(lambda: next(self, _END))) is not _END:
                 yield item  # type: ignore[misc]
         finally:
             self.close()  # which ends the wait of one that was cancelled

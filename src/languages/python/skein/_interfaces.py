@@ -7,19 +7,18 @@ import dataclasses
 import difflib
 import functools
 import importlib.util
+import inspect
 import json
 import os
 import subprocess
 import sys
 import tempfile
 import types
-from typing import Any, Callable, ClassVar, Generic, Optional, TypeVar
+from typing import Any, Callable, ClassVar, Optional, TypeVar
 
 from . import _skein, _types, errors
 from ._calls import Call, Stream
 
-P = TypeVar("P")
-A = TypeVar("A")
 Self = TypeVar("Self", bound="ProxyBase")
 
 DEFAULT_TIMEOUT_NS = 5_000_000_000
@@ -39,7 +38,10 @@ class OperationInfo:
 
 
 class ProxyBase:
-    """A connection: each call goes to the current provider, or to another one if that is lost. Thread-safe."""
+    """A connection: each call goes to the current provider, or to another one if that is lost. A call ends within 5 s, or as within() says.
+    Thread-safe."""
+
+    __slots__ = ("_call", "_native", "_timeout_ns")
 
     def __init__(self, native: _skein.Proxy, timeout_ns: int = DEFAULT_TIMEOUT_NS) -> None:
         self._native = native
@@ -66,18 +68,17 @@ class ProxyBase:
         self.close()
 
 
-class Interface(Generic[P, A]):
-    """What generated interfaces derive from. To provide one, derive a class from it, and give an object of that to Entity.provide()."""
+class Interface:
+    """The base of generated interfaces. To provide one, derive a class from it, and give an object of that to Entity.provide()."""
 
-    Proxy: ClassVar[Any] = ProxyBase
-    AsyncProxy: ClassVar[Any] = ProxyBase
+    Proxy: ClassVar[Any]
+    AsyncProxy: ClassVar[Any]
     _skein_native: ClassVar[_skein.Interface]
     _skein_operations: ClassVar[dict[str, OperationInfo]] = {}
 
 
 _RESERVED = {"within", "connected", "close", "asynchronous", "Proxy", "AsyncProxy"}  # as back_end/python_output.py of the IDL compiler has it
-_interfaces: dict[tuple[str, str], type[Interface[Any, Any]]] = {}
-_newest: dict[str, type[Interface[Any, Any]]] = {}
+_shells: dict[tuple[str, str], type[Interface]] = {}  # by name and description: one class for an interface, whoever tells of it
 
 
 def operation_name(name: str) -> str:
@@ -89,26 +90,32 @@ def operation_name(name: str) -> str:
 def _nanoseconds(seconds: float) -> int:
     if not seconds > 0:
         raise errors.InvalidArgument(f"a timeout of {seconds} s; take more than 0")
-    return min(int(seconds * 1e9), 2**62)
+    return max(1, int(min(seconds * 1e9, 2**62)))
 
 
-def interface_of(native: _skein.Interface, module: str = "skein.fetched") -> type[Interface[Any, Any]]:
+def interface_of(native: _skein.Interface, module: str = "skein.fetched") -> type[Interface]:
     """The class for an interface, and those for its types."""
     told = json.loads(native.describe())
-    key = (native.name, json.dumps(told["types"], sort_keys=True))
-    if key in _interfaces:
-        return _interfaces[key]
-    classes = _types.build(native, told["types"], module)
-    described = {each["name"]: each for each in told["types"]["interfaces"]}
-    own = described[native.name.replace("/", "::")]
-    operations = {}
-    for interface in [own, *(each for each in described.values() if each is not own)]:
-        for each in interface["operations"]:
-            operations[operation_name(each["name"])] = _operation(native, each, classes)
-    made = _new_interface(own, operations, module)
-    made._skein_native, made._skein_operations = native, operations
-    _interfaces[key] = _newest[own["name"]] = made
-    return made
+    with _types.lock:
+        classes = _types.build(native, told["types"], module)
+        described = {each["name"]: each for each in told["types"]["interfaces"]}
+        own = described[native.name.replace("/", "::")]
+        made = _shell(own, described, module)
+        if "_skein_native" not in vars(made):
+            operations: dict[str, OperationInfo] = {}
+            for interface in [own, *(each for each in described.values() if each is not own)]:
+                for each in interface["operations"]:
+                    operations[_unique(operation_name(each["name"]), operations)] = _operation(native, each, classes)
+            _fill(made, operations)
+            made._skein_native, made._skein_operations = native, operations
+        return made
+
+
+def _unique(name: str, taken: dict[str, OperationInfo]) -> str:
+    """An attribute `x` and an operation `get_x` would have one name."""
+    while name in taken:
+        name += "_"
+    return name
 
 
 def _operation(native: _skein.Interface, described: _types.Description, classes: dict[str, type]) -> OperationInfo:
@@ -116,7 +123,7 @@ def _operation(native: _skein.Interface, described: _types.Description, classes:
     return OperationInfo(
         name=described["name"],
         native=native.operation(described["name"]),
-        parameters=tuple(_types.python_name(each["name"]) for each in described["parameters"] if each["direction"] != "Out"),
+        parameters=tuple(_types.python_name(each["name"]) if each["name"] != "self" else "self_" for each in described["parameters"] if each["direction"] != "Out"),
         stream="stream" in flags,
         oneway="one_way" in flags,
         optional="optional" in flags,
@@ -124,25 +131,32 @@ def _operation(native: _skein.Interface, described: _types.Description, classes:
     )
 
 
-def _new_interface(described: _types.Description, operations: dict[str, OperationInfo], module: str) -> type[Interface[Any, Any]]:
-    qualified = ".".join(python for part in _types.place(described) for python in part)
-    name = qualified.split(".")[-1]
+def _shell(own: _types.Description, described: dict[str, _types.Description], module: str) -> type[Interface]:
+    """The class of an interface, derived from those of its bases, as yet without operations."""
+    key = (own["name"], json.dumps([own, *(described[base] for base in own["bases"])], sort_keys=True))
+    if key in _shells:
+        return _shells[key]
+    bases = [_shell(described[base], described, module) for base in own["bases"]]
+    qualified = ".".join(".".join(part) for part in _types.place(own) if part)
+    said = {"__module__": module, "__doc__": f"IDL {own['name']}."}
+    made: Any = type(qualified.split(".")[-1], tuple(bases) or (Interface,), {**said, "__qualname__": qualified})
+    for kind in ("Proxy", "AsyncProxy"):
+        derived = tuple(getattr(base, kind) for base in bases) or (ProxyBase,)
+        setattr(made, kind, type(kind, derived, {**said, "__qualname__": f"{qualified}.{kind}", "__slots__": ()}))
+    _shells[key] = made
+    return made  # type: ignore[no-any-return]
 
-    def class_of(kind: str, bases: tuple[type, ...], members: dict[str, Any]) -> type:
-        outer = qualified + ("." + kind if kind else "")
-        for each, function in members.items():
-            if callable(function):
-                function.__name__, function.__qualname__ = each, f"{outer}.{each}"
-        return type(kind or name, bases, {"__module__": module, "__qualname__": outer, "__doc__": f"IDL {described['name']}.", **members})
 
-    bases = tuple(_newest[each] for each in described["bases"] if each in _newest) or (Interface,)
-    made = class_of("", bases, {each: _unimplemented(info) for each, info in operations.items()})
-    blocking = class_of("Proxy", (ProxyBase,), {each: _blocking(info) for each, info in operations.items()})
-    later = class_of("AsyncProxy", (ProxyBase,), {each: _asynchronous(info) for each, info in operations.items()})
-    setattr(blocking, "asynchronous", property(lambda self: later(self._native, self._timeout_ns), doc="The same connection, whose calls are begun."))
-    setattr(made, "Proxy", blocking)
-    setattr(made, "AsyncProxy", later)
-    return made
+def _fill(made: type[Interface], operations: dict[str, OperationInfo]) -> None:
+    later = made.AsyncProxy
+    for target, make in ((made, _unimplemented), (made.Proxy, _blocking), (later, _asynchronous)):
+        for name, info in operations.items():
+            function = make(info)
+            function.__name__, function.__qualname__ = name, f"{target.__qualname__}.{name}"
+            shown = [inspect.Parameter(each, inspect.Parameter.POSITIONAL_OR_KEYWORD) for each in ("self", *info.parameters)]
+            function.__signature__ = inspect.Signature(shown)  # type: ignore[attr-defined]
+            setattr(target, name, function)
+    made.Proxy.asynchronous = property(lambda self: later(self._native, self._timeout_ns), doc="The same connection, whose calls are begun.")
 
 
 def _unimplemented(info: OperationInfo) -> Callable[..., Any]:
@@ -159,7 +173,7 @@ def _blocking(info: OperationInfo) -> Callable[..., Any]:
 
     def method(self: ProxyBase, *arguments: Any, **named: Any) -> Any:
         if named or len(arguments) != count:
-            arguments = _bound(info, arguments, named)
+            arguments = bound(info, arguments, named)
         return self._call(operation, arguments, self._timeout_ns)
 
     return method
@@ -170,7 +184,7 @@ def _asynchronous(info: OperationInfo) -> Callable[..., Any]:
         return _streaming(info)
 
     def method(self: ProxyBase, *arguments: Any, **named: Any) -> Call[Any]:
-        given = _bound(info, arguments, named)
+        given = bound(info, arguments, named)
         return Call(lambda ended: self._native.start(info.native, given, self._timeout_ns, ended))
 
     return method
@@ -178,12 +192,12 @@ def _asynchronous(info: OperationInfo) -> Callable[..., Any]:
 
 def _streaming(info: OperationInfo) -> Callable[..., Any]:
     def method(self: ProxyBase, *arguments: Any, **named: Any) -> Stream[Any]:
-        return Stream(self._native.stream(info.native, _bound(info, arguments, named), self._timeout_ns))
+        return Stream(self._native.stream(info.native, bound(info, arguments, named), self._timeout_ns))
 
     return method
 
 
-def _bound(info: OperationInfo, arguments: tuple[Any, ...], named: dict[str, Any]) -> tuple[Any, ...]:
+def bound(info: OperationInfo, arguments: tuple[Any, ...], named: dict[str, Any]) -> tuple[Any, ...]:
     """All arguments in the order of the parameters."""
     expected = f"{operation_name(info.name)}({', '.join(info.parameters)})"
     if len(arguments) > len(info.parameters):
@@ -198,9 +212,11 @@ def _bound(info: OperationInfo, arguments: tuple[Any, ...], named: dict[str, Any
     return arguments + tuple(named[name] for name in left)
 
 
-def implementations(service: object, interface: Optional[type[Interface[Any, Any]]]) -> tuple[type[Interface[Any, Any]], dict[str, Callable[..., Any]]]:
+def implementations(service: object, interface: Optional[type[Interface]]) -> tuple[type[Interface], dict[str, Callable[..., Any]]]:
     """The interface that an object implements, and its functions by the names of the operations. Throws InvalidArgument if one is missing."""
     known = interface or next((each for each in type(service).__mro__ if "_skein_native" in vars(each)), None)
+    if isinstance(service, type):
+        raise errors.InvalidArgument(f"{service.__qualname__} is a class; give an object of it, {service.__name__}()")
     if known is None:
         raise errors.InvalidArgument(f"{type(service).__qualname__} derives from no IDL interface: write `class {type(service).__name__}(INTERFACE)`, "
                                      "or name it, as in provide(service, interface=INTERFACE)")  # fmt: skip
@@ -222,7 +238,7 @@ def implementations(service: object, interface: Optional[type[Interface[Any, Any
 
 def define(module: dict[str, Any], descriptions: str, scopes: tuple[str, ...] = ()) -> None:
     """Puts the classes of an IDL file into a Python module: what generated code calls. An IDL module is a class that holds its names."""
-    placed: list[tuple[list[str], Any]] = [(scope.split("."), None) for scope in scopes]
+    placed: list[tuple[list[str], Any]] = [(scope.split("."), None) for scope in scopes]  # None: an IDL module
     for text in descriptions.split():
         native = _skein.Interface(base64.b64decode(text))
         told = json.loads(native.describe())["types"]
@@ -236,14 +252,12 @@ def define(module: dict[str, Any], descriptions: str, scopes: tuple[str, ...] = 
 
 
 def _put(module: dict[str, Any], path: list[str], made: Any) -> None:
-    """`made` is None for an IDL module."""
-    holder: Any = types.SimpleNamespace(**{})
+    holder: Any = None
     for depth, name in enumerate(path):
-        last = depth == len(path) - 1 and made is not None
-        found = module.get(name) if depth == 0 else getattr(holder, name, None)
-        if last:
+        found: Any = module.get(name) if depth == 0 else getattr(holder, name, None)
+        if made is not None and depth == len(path) - 1:
             found = made
-        elif found is None:
+        elif not isinstance(found, type):  # or it is none of an IDL module: `import skein`
             found = type(name, (), {"__module__": module["__name__"], "__qualname__": ".".join(path[: depth + 1])})
         if depth == 0:
             module[name] = found

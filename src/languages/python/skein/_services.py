@@ -7,7 +7,7 @@ import concurrent.futures
 import contextvars
 import inspect
 import logging
-from collections.abc import Awaitable, Coroutine
+from collections.abc import Awaitable
 from typing import Any, Callable, Optional, TypeVar, Union
 
 from . import _skein, errors
@@ -49,58 +49,95 @@ def current_call() -> CallContext:
     return call
 
 
-def handler(function: Callable[..., Any], stream: bool, oneway: bool, raised: dict[str, type],
-            loop: Optional[asyncio.AbstractEventLoop]) -> Callable[[tuple[Any, ...], _skein.Reply], None]:  # fmt: skip
-    """What answers the calls of one operation. Coroutines run on `loop`."""
+def handler(function: Callable[..., Any], info: Any, loop: Optional[asyncio.AbstractEventLoop]) -> Callable[[tuple[Any, ...], _skein.Reply], None]:
+    """What answers the calls of one operation, an OperationInfo. Coroutines run on `loop`."""
+    name = getattr(function, "__qualname__", str(function))
 
     def fail(reply: _skein.Reply, error: BaseException) -> None:
+        """Of what the function throws, an Error and a declared exception keep their class; all else is a mistake of the service."""
         try:
             if isinstance(error, errors.UserException):
-                return reply.raise_(exception_name(error, raised), error)
+                return reply.raise_(exception_name(error, info.raised), error)
         except errors.Error as wrong:
-            error = wrong
+            return mistake(reply, wrong)
         if not isinstance(error, errors.Error):
-            _log.error("%s has failed", getattr(function, "__qualname__", function), exc_info=error)
-        text = str(error) if isinstance(error, errors.Error) else f"{type(error).__name__}: {error}"
-        reply.fail(errors.kind_of(error), text)
+            return mistake(reply, error)
+        reply.fail(errors.kind_of(error), str(error))
 
-    def answer_later(future: Any, reply: _skein.Reply) -> None:
-        def ended(done: Any) -> None:
+    def mistake(reply: Optional[_skein.Reply], error: BaseException) -> None:
+        _log.error("%s has failed", name, exc_info=error)
+        if reply is not None:
+            reply.fail(errors.kind_of(errors.Internal()), str(error) if isinstance(error, errors.Error) else f"{type(error).__name__}: {error}")
+
+    def logged(done: concurrent.futures.Future[Any]) -> None:
+        if not done.cancelled() and (error := done.exception()):
+            mistake(None, error)
+
+    def give(reply: _skein.Reply, result: Any) -> None:
+        try:
+            reply.answer(result)
+        except errors.InvalidArgument as wrong:
+            mistake(reply, wrong)
+
+    def answer_later(future: concurrent.futures.Future[Any], reply: _skein.Reply) -> None:
+        def ended(done: concurrent.futures.Future[Any]) -> None:
             try:
-                reply.answer(done.result())
-            except (Exception, asyncio.CancelledError, concurrent.futures.CancelledError) as error:
+                result = done.result()
+            except (asyncio.CancelledError, concurrent.futures.CancelledError):
+                reply.fail(errors.kind_of(errors.Cancelled()), f"{name}() was cancelled")
+            except Exception as error:
                 fail(reply, error)
+            else:
+                give(reply, result)
 
         future.add_done_callback(ended)
 
-    def awaited(coroutine: Coroutine[Any, Any, Any]) -> concurrent.futures.Future[Any]:
+    def begun(awaitable: Awaitable[Any]) -> concurrent.futures.Future[Any]:
         if loop is None:
-            coroutine.close()
-            raise errors.InvalidArgument("an `async def` of a service needs the event loop of who provides it: call provide() in a coroutine")
-        return asyncio.run_coroutine_threadsafe(coroutine, loop)
+            raise errors.InvalidArgument(f"{name}() returned an awaitable, and provide() was called without a running event loop; call it in a coroutine")
+        return asyncio.run_coroutine_threadsafe(_awaited(awaitable), loop)
 
     def push_all(results: Any, reply: _skein.Reply) -> None:
-        if inspect.isasyncgen(results):
-            while (item := awaited(_next(results)).result()) is not _END:
-                reply.push(item)
-        else:
+        if not inspect.isasyncgen(results):
             for item in results:
                 reply.push(item)
+            return
+        try:
+            while (item := next_of(results, reply)) is not _END:
+                reply.push(item)
+        finally:
+            begun(results.aclose())
+
+    def next_of(results: Any, reply: _skein.Reply) -> Any:
+        """Gives up if nobody waits for results any more."""
+        waiting = begun(_next(results))
+        while True:
+            try:
+                return waiting.result(_LOOK_AGAIN)
+            except concurrent.futures.TimeoutError:
+                if waiting.done():
+                    return waiting.result()  # or it throws its own TimeoutError
+                if reply.cancelled() or reply.time_left_ns() < 0:
+                    waiting.cancel()
+                    return _END
 
     def answer(arguments: tuple[Any, ...], reply: _skein.Reply) -> None:
         token = _current.set(CallContext(reply))
         try:
             result = function(*arguments)
-            if stream:
+            if info.stream:
                 return push_all(result, reply)
-            if inspect.iscoroutine(result):
-                result = awaited(result)
+            if inspect.isawaitable(result) and not isinstance(result, concurrent.futures.Future):
+                result = begun(result)
+                if info.oneway:
+                    return result.add_done_callback(logged)  # type: ignore[no-any-return]
+                reply.on_cancel(result.cancel)
             if isinstance(result, concurrent.futures.Future):
                 return answer_later(result, reply)
-            if not oneway:
-                reply.answer(result)
+            if not info.oneway:
+                give(reply, result)
         except BaseException as error:
-            if not (stream and isinstance(error, errors.Cancelled)):  # nobody waits for the results
+            if not (info.stream and reply.cancelled()):  # nobody waits for the results
                 fail(reply, error)
         finally:
             _current.reset(token)
@@ -109,6 +146,11 @@ def handler(function: Callable[..., Any], stream: bool, oneway: bool, raised: di
 
 
 _END = object()
+_LOOK_AGAIN = 0.1  # seconds
+
+
+async def _awaited(awaitable: Awaitable[Any]) -> Any:
+    return await awaitable
 
 
 async def _next(results: Any) -> Any:

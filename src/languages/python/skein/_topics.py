@@ -16,12 +16,16 @@ T = TypeVar("T")
 
 
 class Profile(enum.IntEnum):
-    """What fits the data of a topic."""
+    """What fits the data of a topic. Use the same on both sides.
 
-    EVERY_VALUE = 0  # reliable, in order
-    SENSOR = 1  # best effort; only values younger than `period` matter (0.5 s)
-    COMMAND = 2  # the newest value of the publisher with the greatest `strength`, once per `period` (0.1 s)
-    STATE = 3  # the last value of each key, also for those who join later
+    EVERY_VALUE: reliable, in order. SENSOR: best effort; only values younger than `period` matter (0.5 s). COMMAND: the newest value of the publisher
+    with the greatest `strength`, once per `period` (0.1 s). STATE: the last value of each key, also for those who join later.
+    """
+
+    EVERY_VALUE = 0
+    SENSOR = 1
+    COMMAND = 2
+    STATE = 3
 
 
 def _of(type_: Any) -> tuple[_skein.Interface, str]:
@@ -37,10 +41,10 @@ class Publisher(Generic[T]):
 
     def __init__(self, entity: _skein.Entity, type_: type[T], topic: str, profile: Profile, period_ns: int, systems: list[str], strength: int) -> None:
         self._native = _skein.Publisher(entity, *_of(type_), topic, systems, profile, period_ns, strength)
-        self.publish = self._native.publish
 
-    publish: Callable[[T], None]
-    """Throws Overloaded if reliable subscribers make no room in time."""
+    def publish(self, value: T) -> None:
+        """Throws Overloaded if a reliable subscriber makes no room within 100 ms: one that hangs, or that died and is not missed yet."""
+        self._native.publish(value)
 
     @property
     def subscribers(self) -> int:
@@ -49,7 +53,7 @@ class Publisher(Generic[T]):
 
     def wait_for_acknowledgments(self, timeout: float) -> bool:
         """Waits until all reliable subscribers that are matched now have what was published; False if they have not by the timeout."""
-        return self._native.wait(int(timeout * 1e9))
+        return self._native.wait(max(1, int(min(timeout * 1e9, 2**62))))
 
     def close(self) -> None:
         self._native.close()
@@ -81,6 +85,9 @@ class Subscription(Generic[T]):
         """Ends it: iterations end when they have taken what is left. Refused in its own callback."""
         self._native.close()
         self._kept.discard(self)
+        self._end()
+
+    def _end(self) -> None:
         with self._changed:
             self._closed = True
             self._wake()
@@ -131,4 +138,8 @@ class Subscription(Generic[T]):
                     raise StopAsyncIteration
                 future: asyncio.Future[None] = loop.create_future()
                 self._waiting.append((loop, future))
-            await future
+            try:
+                await future
+            finally:
+                with self._changed:
+                    self._waiting = [each for each in self._waiting if each[1] is not future]

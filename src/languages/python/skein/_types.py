@@ -7,8 +7,10 @@ import ast
 import dataclasses
 import enum
 import functools
+import hashlib
 import json
 import keyword
+import threading
 from typing import Any, Optional
 
 from . import _skein
@@ -16,12 +18,18 @@ from .errors import InvalidArgument, UserException
 
 Description = dict[str, Any]
 
-_classes: dict[tuple[str, str], type] = {}  # by name and all that the declaration names: one class for a type, whoever tells of it
+_classes: dict[tuple[str, bytes], type] = {}  # by name and a digest of all that the declaration names: one class for a type, whoever tells of it
+lock = threading.RLock()  # of all classes that are made
 
 
 def python_name(name: str) -> str:
     """An IDL name; a keyword of Python gets an underscore. The IDL compiler does the same."""
     return name + "_" if keyword.iskeyword(name) else name
+
+
+def case_name(name: str) -> str:
+    """Of a union's member."""
+    return name + "_" if name in Union.__slots__ else python_name(name)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -34,18 +42,18 @@ class Reference:
 
 
 class Union:
-    """What an IDL union is: a discriminator, and the value that it selects, or None.
+    """An IDL union: a discriminator, and the value that it selects, or None.
 
     A union is made by one of its members, `Content(label="fish")`, or by both parts, `Content(Crane.Small, "fish")`. A member is read by its
-    name: AttributeError if another is held.
+    name: AttributeError if another is held. (A member `value` or `discriminator` is called `value_` or `discriminator_`.)
     """
 
     __slots__ = ("discriminator", "value")
     _skein_cases: dict[str, tuple[Any, frozenset[Any]]] = {}  # a discriminator that selects the member, and all that do; None: all others
     _skein_initial: tuple[Any, Any] = (None, None)  # a discriminator, and what makes its value
 
-    def __init__(self, discriminator: Any = None, value: Any = None, **member: Any) -> None:
-        if len(member) > 1 or (member and discriminator is not None):
+    def __init__(self, discriminator: Any = None, value: Any = None, /, **member: Any) -> None:
+        if len(member) > 1 or (member and discriminator is not None) or (discriminator is None and value is not None):
             raise TypeError(f"{type(self).__qualname__} holds one member: give one by its name, or a discriminator and its value")
         if member:
             (name, value), = member.items()
@@ -87,7 +95,11 @@ class Union:
 
 def build(interface: _skein.Interface, description: Description, module: str) -> dict[str, type]:
     """The classes of all declared types, by their IDL names, which `interface` knows from now on."""
-    declarations = {each["name"]: each for each in description["declarations"]}
+    with lock:
+        return _build(interface, {each["name"]: each for each in description["declarations"]}, module)
+
+
+def _build(interface: _skein.Interface, declarations: dict[str, Description], module: str) -> dict[str, type]:
     made: dict[str, type] = {}
     new: dict[str, type] = {}
     for name, declaration in declarations.items():
@@ -101,8 +113,8 @@ def build(interface: _skein.Interface, description: Description, module: str) ->
     return made
 
 
-def _signature(name: str, declarations: dict[str, Description]) -> str:
-    """The text of a declaration and of all that it names."""
+def _signature(name: str, declarations: dict[str, Description]) -> bytes:
+    """A digest of a declaration and of all that it names."""
     found: dict[str, Description] = {}
     left = [name]
     while left:
@@ -110,7 +122,7 @@ def _signature(name: str, declarations: dict[str, Description]) -> str:
         if each in declarations and each not in found:
             found[each] = declarations[each]
             left += _named(declarations[each])
-    return json.dumps(found, sort_keys=True)
+    return hashlib.sha256(json.dumps(found, sort_keys=True).encode()).digest()
 
 
 def _named(part: Any) -> list[str]:
@@ -176,7 +188,7 @@ def _complete_union(made: Any, declaration: Description, interface: _skein.Inter
         labels = [_label(discriminator, number, classes) for number in member["labels"]]
         by_default = [None] if "by_default" in member["flags"] else []
         case = (_label(discriminator, selecting[member["name"]], classes), frozenset(labels + by_default))
-        made._skein_cases[python_name(member["name"])] = case
+        made._skein_cases[case_name(member["name"])] = case
         if member["name"] == first:
             made._skein_initial = (case[0], functools.partial(_initial, member["type"], classes))
 
@@ -233,7 +245,8 @@ def _elements(element: Description, count: int, classes: dict[str, type]) -> Any
 def _literal(kind: Description, text: str, classes: dict[str, type]) -> Any:
     """What @default says, in IDL."""
     if kind["kind"] == "Declared":
-        return getattr(classes[kind["name"]], python_name(text))
+        made: Any = classes[kind["name"]]
+        return made(int(text)) if issubclass(made, enum.IntFlag) else getattr(made, python_name(text))
     if text in ("TRUE", "FALSE"):
         return text == "TRUE"
     value = ast.literal_eval(text.removeprefix("L"))

@@ -50,6 +50,6 @@ BY_KIND: tuple[type[Error], ...] = (
 
 
 def kind_of(error: BaseException) -> int:
-    """How a service tells the error to its caller: what is no error of Skein's is Internal."""
+    """The class of an error on the wire. Exceptions that are not Skein's become Internal."""
     internal = BY_KIND.index(Internal)
     return next((kind for kind, each in enumerate(BY_KIND[:internal]) if kind and isinstance(error, each)), internal)
