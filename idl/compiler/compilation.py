@@ -4,7 +4,7 @@ import os
 import sys
 
 import model
-from back_end import analysis, c_output, flattened, keys, output, python_output
+from back_end import analysis, c_output, flattened, java_output, keys, output, python_output
 from front_end import builder, parser, pragmas, source
 from report import Place, Report, TooManyErrors
 
@@ -62,16 +62,16 @@ class Compilation:
         )
         base = os.path.join(folder, name)
         made = c_output if language == "c" else output
-        if language == "python":
-            outputs = python_output.outputs(file, base, self._name_of)
+        if language in ("java", "python"):
+            outputs = {"java": java_output, "python": python_output}[language].outputs(file, base, self._name_of)
         else:
             outputs = {  # in the order of skein_add_idl, which make and ninja ask for
                 base.removesuffix(".idl") + ".dds.idl": flattened.text(file),
                 base + (".h" if language == "c" else ".hpp"): made.header(file),
                 base + (".c" if language == "c" else ".cpp"): made.source(file),
             }
-        os.makedirs(os.path.dirname(base) or ".", exist_ok=True)
         for path, lines in outputs.items():
+            os.makedirs(os.path.dirname(path) or ".", exist_ok=True)
             _write(path, "\n".join(lines).rstrip("\n") + "\n")
         if depfile:
             self._write_depfile(depfile, outputs)
