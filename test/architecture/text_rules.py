@@ -12,6 +12,8 @@ _SLEEP = re.compile(r"\b(sleep_for|sleep_until|usleep|nanosleep|time\.sleep)\b|\
 SLEEPERS = {
     "test/tools/eventually.hpp": "looks again at a condition",
     "test/languages/python/tools.py": "looks again at a condition",
+    "test/languages/table/peer.py": "looks again at a condition, and takes its time",
+    "test/languages/table/table_peer_c.c": "looks again at a condition, and takes its time",
     "test/tools/stopped.hpp": "how long a process is stopped",
     "test/mission/supervise/shell_mission.hpp": "looks again at a condition",
     "test/connector/echo_service.cpp": "an operation that takes its time until it is cancelled",
