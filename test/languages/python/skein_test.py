@@ -594,6 +594,7 @@ class Lives(Harbour):
             "own.perform(harbour.IBuoy, 'after', 50_000)",
             "asyncio.run(asyncio.wait_for(asyncio.Event().wait(), 60))",
             "asyncio.run(own.async_connect(harbour.IReporter, timeout=60))",
+            "asyncio.run(anext(aiter(buoy.gusts(1))))",
         ):
             script = f"""
 import asyncio, threading

@@ -86,11 +86,14 @@ class Stream(Generic[T]):
         return self._items()
 
     async def _items(self) -> AsyncIterator[T]:
+        loop = asyncio.get_running_loop()
+        thread = concurrent.futures.ThreadPoolExecutor(1, "skein-stream")  # of its own: the loop's threads may all wait
         try:
-            while (item := await in_thread(lambda: next(self, _END))) is not _END:
+            while (item := await loop.run_in_executor(thread, next, self, _END)) is not _END:
                 yield item  # type: ignore[misc]
         finally:
             self.close()  # which ends the wait of one that was cancelled
+            thread.shutdown(wait=False)
 
     def close(self) -> None:
         self._native.close()
