@@ -101,8 +101,7 @@ void define_interface(py::module_& module) {
              return decode(self.node(type), bytes_of(value_of(checked)));
            })
       .def("operation", &Interface::operation);
-  py::class_<Operation, std::shared_ptr<Operation>>(module, "Operation")
-      .def_readonly("name", &Operation::name);
+  py::class_<Operation, std::shared_ptr<Operation>>(module, "Operation");
 }
 
 }  // namespace skein::python

@@ -54,7 +54,7 @@ class Reply {
     auto held = std::make_unique<py::object>(callback);
     const skein_cancel_callbacks callbacks{held.get(), call, drop<py::object>};
     run([&](skein_error error) { return skein_reply_on_cancel(*handle_, &callbacks, error); });
-    held.release();  // which on_close has now
+    static_cast<void>(held.release());  // which on_close has now
   }
 
  private:
@@ -141,7 +141,7 @@ std::shared_ptr<OwnedProvider> provide(
     return skein_provider_new(*entity.handle, interface->handle(), &options, &callbacks, &made,
                               error);
   });
-  service.release();  // which on_close has now
+  static_cast<void>(service.release());  // which on_close has now
   return std::make_shared<OwnedProvider>(made);
 }
 

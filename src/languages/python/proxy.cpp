@@ -148,7 +148,7 @@ std::shared_ptr<OwnedCall> start(const std::shared_ptr<Proxy>& proxy,
                                  timeout_ns, &callbacks, &begun, error);
       },
       proxy->interface.get());
-  told.release();  // which on_close has now
+  static_cast<void>(told.release());  // which on_close has now
   return std::make_shared<OwnedCall>(begun);
 }
 

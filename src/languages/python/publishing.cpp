@@ -117,7 +117,7 @@ void define_topics(py::module_& module) {
           return skein_subscription_new(*entity.handle, types->handle(), type.c_str(),
                                         topic.c_str(), &given.options, &callbacks, &made, error);
         });
-        reader.release();  // which on_close has now
+        static_cast<void>(reader.release());  // which on_close has now
         return std::make_shared<Subscription>(Subscription{OwnedSubscription(made)});
       }))
       .def("publishers", &Subscription::publishers)

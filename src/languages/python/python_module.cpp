@@ -99,20 +99,17 @@ void define_log(py::module_& module) {
       return skein_log_write(level, place.c_str(), text.c_str(), error);
     });
   });
-  module.def("set_log_level", [](int level) {
-    run([&](skein_error error) { return skein_log_set_level(level, error); });
-  });
 }
 
-/// What C++ throws while values are read and written.
+/// Turns exceptions of C++, from reading and writing values, into those of Python.
 void translate(std::exception_ptr thrown) {
   try {
-    if (thrown) std::rethrow_exception(thrown);
+    if (thrown) std::rethrow_exception(std::move(thrown));
   } catch (const py::builtin_exception&) {
     throw;
   } catch (const Error&) {
     try {
-      raise(c::failure_of(thrown));
+      raise(c::failure_of(std::current_exception()));
     } catch (py::error_already_set& error) {
       error.restore();
     }

@@ -40,8 +40,8 @@ struct Visitors {
 
 unsigned long main_thread = 0;
 
-/// Tells of SIGINT, whose handler it calls afterwards: Python's runs what `signal.signal()` was
-/// given only when the main thread does not wait any more.
+/// Calls a function at SIGINT, then the handler that was installed before. That is Python's: it
+/// runs the function that signal.signal() was given, but not while the main thread waits.
 class SignalWatch {
  public:
   static SignalWatch& instance() {

@@ -179,7 +179,7 @@ class ValueReader {
     const CdrReader::Delimited delimited(reader_,
                                          declaration.extensibility != Extensibility::Final);
     const bool by_identifier = declaration.extensibility == Extensibility::Mutable;
-    const py::object object = new_object(node.made);
+    py::object object = new_object(node.made);
     if (declaration.kind == DeclarationKind::Union) {
       switched(node, by_identifier, object);
     } else {
@@ -201,7 +201,7 @@ class ValueReader {
   }
 
   static py::object bitset(const Node& node, std::uint64_t bits) {
-    const py::object object = new_object(node.made);
+    py::object object = new_object(node.made);
     std::size_t name = 0;
     for (const types::BitField& field : node.type->declaration->fields) {
       const unsigned width = field.width;

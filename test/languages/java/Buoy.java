@@ -9,6 +9,7 @@ import skein.Provider;
 /** The service that is called here. */
 class Buoy implements IBuoy {
   final AtomicInteger forgotten = new AtomicInteger();
+  final AtomicInteger begun = new AtomicInteger();
   final AtomicInteger cancelled = new AtomicInteger();
 
   @Override
@@ -35,6 +36,7 @@ class Buoy implements IBuoy {
   @Override
   public int after(int ms) {
     Provider.Context call = Provider.Context.current();
+    begun.incrementAndGet();
     try {
       for (long end = System.nanoTime() + ms * 1_000_000L; System.nanoTime() < end && !call.cancelled(); ) Thread.sleep(1);
     } catch (InterruptedException ended) {

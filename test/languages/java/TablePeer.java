@@ -23,6 +23,7 @@ final class TablePeer {
   private static final class Told extends Buoy {
     @Override
     public String greet(String name) {
+      if (name.equals("begun")) return begun + " begun";
       return name.equals("cancelled") ? cancelled + " cancelled" : super.greet(name);
     }
   }
@@ -103,13 +104,18 @@ final class TablePeer {
 
   private static boolean cancels(IBuoy.Proxy buoy) throws InterruptedException {
     CompletableFuture<Integer> slow = buoy.afterAsync(60_000);
-    Thread.sleep(200);
+    if (!awaitCount(buoy, "begun")) return false;
     slow.cancel(true);
-    for (int i = 0; buoy.greet("cancelled").equals("0 cancelled"); ++i) {
-      if (i > 10_000) return false;
+    return awaitCount(buoy, "cancelled");
+  }
+
+  /** Until the provider has counted one. */
+  private static boolean awaitCount(IBuoy.Proxy buoy, String of) throws InterruptedException {
+    for (int i = 0; i < 10_000; ++i) {
+      if (!buoy.greet(of).equals("0 " + of)) return true;
       Thread.sleep(2);
     }
-    return true;
+    return false;
   }
 
   private static boolean keepsDeadlines(IBuoy.Proxy buoy) {

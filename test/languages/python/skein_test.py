@@ -83,9 +83,9 @@ class Odd(unittest.TestCase):
                 self.assertEqual((await derived.get_x(3), await derived.get_x_()), (3, 7))
                 value = odd.Self(1, 2, True, odd.Marks.second, b"x")
                 self.assertEqual(await derived.back(value), value)
-                with self.assertLogs("skein", "ERROR"):
+                with self.assertLogs("skein", "ERROR") as logged:
                     await derived.tell("x")
-                    await asyncio.to_thread(eventually, lambda: False, 0.1)
+                    self.assertTrue(await asyncio.to_thread(eventually, lambda: logged.output))
 
         asyncio.run(serve())
 

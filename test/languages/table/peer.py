@@ -10,7 +10,7 @@ vendor, shared_memory, role = sys.argv[1:]
 
 
 class Buoy(harbour.IBuoy):
-    cancelled = 0
+    begun = cancelled = 0
 
     def wind(self, level, at):
         if level == 0:
@@ -18,7 +18,7 @@ class Buoy(harbour.IBuoy):
         return harbour.Wind(level, at * 2, harbour.Side.Starboard), 77
 
     def greet(self, name):
-        return f"{self.cancelled} cancelled" if name == "cancelled" else f"Ahoy, {name}"
+        return f"{getattr(self, name)} {name}" if name in ("begun", "cancelled") else f"Ahoy, {name}"
 
     def forget(self):
         pass
@@ -27,6 +27,7 @@ class Buoy(harbour.IBuoy):
         return (harbour.Wind(i, i + 0.5) for i in range(count))
 
     async def after(self, ms):
+        self.begun += 1
         try:
             await asyncio.sleep(ms / 1000)
         except asyncio.CancelledError:
@@ -80,10 +81,10 @@ async def check(own):
 
     async def cancel():
         slow = asyncio.ensure_future(buoy.after(60_000))
-        await asyncio.sleep(0.2)
-        slow.cancel()
-        while await buoy.greet("cancelled") == "0 cancelled":
-            await asyncio.sleep(0.005)
+        for name in ("begun", "cancelled"):
+            while await buoy.greet(name) == f"0 {name}":
+                await asyncio.sleep(0.005)
+            slow.cancel()
         return True
 
     async def deadline():

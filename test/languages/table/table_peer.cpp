@@ -23,6 +23,7 @@ class Buoy : public harbour::IBuoy {
     return {level, at * 2, harbour::Side::Starboard};
   }
   std::string greet(const std::string& name) override {
+    if (name == "begun") return std::to_string(begun_) + " begun";
     return name == "cancelled" ? std::to_string(cancelled_) + " cancelled" : "Ahoy, " + name;
   }
   void forget() override {}
@@ -33,12 +34,14 @@ class Buoy : public harbour::IBuoy {
   }
   std::int32_t after(std::int32_t ms) override {
     const auto& call = *CallContext::current();
+    ++begun_;
     if (test::eventually([&] { return call.cancelled(); }, std::chrono::milliseconds(ms)))
       ++cancelled_;
     return ms;
   }
 
  private:
+  std::atomic<int> begun_{0};
   std::atomic<int> cancelled_{0};
 };
 
@@ -108,7 +111,7 @@ bool performs(Entity& own) {
 
 bool cancels(const harbour::IBuoy::Proxy& buoy) {
   auto slow = buoy.async_after(60'000);
-  if (test::eventually([&] { return slow.ready(); }, 200ms)) return false;
+  if (!test::eventually([&] { return buoy.greet("begun") != "0 begun"; })) return false;
   slow.cancel();
   return test::eventually([&] { return buoy.greet("cancelled") != "0 cancelled"; });
 }

@@ -10,6 +10,7 @@
 
 static skein_error failure;
 static const skein_error ignored = {0};
+static atomic_int begun;
 static atomic_int cancelled;
 static atomic_bool told;
 
@@ -43,6 +44,8 @@ static void greet(void* user, const harbour_IBuoy_greet_in* in, skein_reply repl
   (void)user;
   if (strcmp(in->name, "cancelled") == 0)
     snprintf(text, sizeof text, "%d cancelled", cancelled);
+  else if (strcmp(in->name, "begun") == 0)
+    snprintf(text, sizeof text, "%d begun", begun);
   else
     snprintf(text, sizeof text, "Ahoy, %s", in->name);
   harbour_IBuoy_greet_answer(reply, text, ignored);
@@ -67,6 +70,7 @@ static void after(void* user, const harbour_IBuoy_after_in* in, skein_reply repl
   (void)user;
   (void)in;
   skein_reply_on_cancel(reply, &callbacks, ignored);
+  ++begun;
 }
 
 static void report(void* user, const harbour_IReporter_report_in* in, skein_reply reply) {
@@ -179,25 +183,26 @@ static bool performs(skein_entity entity) {
   return false;
 }
 
-static bool is_cancelled(skein_proxy buoy) {
-  skein_result result;
-  const harbour_IBuoy_greet_out* out;
-  DEMAND(harbour_IBuoy_greet(buoy, "cancelled", &result, &out, failure));
-  const bool yes = strcmp(out->return_, "0 cancelled") != 0;
-  skein_result_free(result, failure);
-  return yes;
+/* Until the provider has counted one. */
+static bool await_count(skein_proxy buoy, const char* of) {
+  for (int i = 0; i < 10000; ++i) {
+    skein_result result;
+    const harbour_IBuoy_greet_out* out;
+    DEMAND(harbour_IBuoy_greet(buoy, of, &result, &out, failure));
+    const bool counted = out->return_[0] != '0';
+    skein_result_free(result, failure);
+    if (counted) return true;
+    pause_briefly();
+  }
+  return false;
 }
 
 static bool cancels(skein_proxy buoy) {
   skein_call slow;
   DEMAND(harbour_IBuoy_after_start(buoy, 60000, NULL, &slow, failure));
-  for (int i = 0; i < 100; ++i) pause_briefly();
+  if (!await_count(buoy, "begun")) return false;
   DEMAND(skein_call_cancel(slow, failure));
-  for (int i = 0; i < 10000; ++i) {
-    if (is_cancelled(buoy)) return true;
-    pause_briefly();
-  }
-  return false;
+  return await_count(buoy, "cancelled");
 }
 
 static bool keeps_deadlines(skein_proxy buoy) {

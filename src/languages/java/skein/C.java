@@ -177,8 +177,6 @@ final class C {
 
   static native byte skein_reply_time_left(long reply, LongByReference out, long error);
 
-  static native byte skein_reply_free(long reply, long error);
-
   static native byte skein_publisher_new(long entity, long types, String type, String topic, TopicOptions options, LongByReference out, long error);
 
   static native byte skein_publisher_publish(long publisher, Value.ByValue value, long error);
