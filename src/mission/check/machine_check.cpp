@@ -77,10 +77,14 @@ class MachineCheck {
         check_interface(peer);
         check_meeting(peer);
       } else {
-        check_program(peer);
+        check_program(peer.start.program, peer.name, peer.where);
       }
       check_cpus(peer, peer.name);
-      for (const CspProfile& csp : peer.csps) check_cpus(csp, peer.name + "/" + csp.name);
+      for (const CspProfile& csp : peer.csps) {
+        const std::string name = peer.name + "/" + csp.name;
+        check_cpus(csp, name);
+        if (!csp.start.program.empty()) check_program(csp.start.program, name, csp.where);
+      }
     }
     return std::move(findings_);
   }
@@ -151,13 +155,13 @@ class MachineCheck {
     }
   }
 
-  void check_program(const PeerProfile& peer) {
-    const std::string& program = peer.start.program;
+  void check_program(const std::string& program, const std::string& of,
+                     const SourcePosition& where) {
     if (is_executable(program)) return;
     const bool path = program.find('/') != std::string::npos;
     const bool line = program.find(' ') != std::string::npos;
-    add(Severity::Error, peer.where,
-        "the program '" + program + "' of '" + peer.name + "' " +
+    add(Severity::Error, where,
+        "the program '" + program + "' of '" + of + "' " +
             (path ? "cannot be executed" : "is not in PATH"),
         line   ? "write its arguments as <argument value=\"...\"/>"
         : path ? "check the path, and that its file is executable"
@@ -203,7 +207,8 @@ class PluginCheck {
       if (!is_here(peer.host, host) || !peer.start.program.empty()) continue;
       if (can_check(peer, peer.name)) check_process(peer);
       for (const CspProfile& csp : peer.csps) {
-        if (csp.process != CspProcess::Own || !csp.component) continue;
+        if (csp.process != CspProcess::Own || !csp.component || !csp.start.program.empty())
+          continue;
         if (can_check(csp, peer.name + "/" + csp.name)) check_own(csp);
       }
     }

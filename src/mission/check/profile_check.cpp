@@ -157,8 +157,10 @@ class Checker {
     for (const auto& csp : peer.csps) {
       if (!csp.component) continue;
       check_component(*csp.component, mission_.dictionary, findings_);
-      check_settings(peer.name + "/" + csp.name, csp.parameters, csp.where, *csp.component,
-                     mission_.dictionary, findings_);
+      if (csp.start.program.empty()) {
+        check_settings(peer.name + "/" + csp.name, csp.parameters, csp.where, *csp.component,
+                       mission_.dictionary, findings_);
+      }
       check_references(csp.parameters, peer);
       check_isolation(csp);
       check_implements_something(csp);

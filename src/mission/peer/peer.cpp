@@ -531,8 +531,9 @@ int run_process(const MissionProfile& mission, const std::string& process,
   const CspProfile* csp =
       slash == std::string::npos ? nullptr : peer->find_csp(process.substr(slash + 1));
   if (slash != std::string::npos && !csp) refuse_process(mission, process);
-  if (!peer->start.program.empty()) {
-    throw InvalidArgument("'" + peer->name + "' is a program of its own, '" + peer->start.program +
+  const std::string& program = csp ? csp->start.program : peer->start.program;
+  if (!program.empty()) {
+    throw InvalidArgument("'" + process + "' is a program of its own, '" + program +
                           "'; skein launch --dry-run says how it is started");
   }
 

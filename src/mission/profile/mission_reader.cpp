@@ -277,6 +277,8 @@ class MissionReader {
     if (csp.process == CspProcess::InOwner) {
       refuse_process_rules(element);
       refuse_process_start(element);
+    } else if (!csp.start.program.empty()) {
+      refuse_peer_options(element);
     }
     if (csp.process == CspProcess::Own && csp.threads.thread == CallThread::Caller) {
       findings_.error(element.maybe_attribute("thread")->where,

@@ -27,7 +27,7 @@ bool read_tells_ready(const XmlElement& element, const ProcessStart& start) {
   const auto word = element.maybe_attribute("ready");
   if (start.program.empty()) {
     if (word && !word->inherited) {
-      element.findings().error(word->where, "ready is for a peer with a program of its own",
+      element.findings().error(word->where, "ready is for a program of one's own",
                                "leave it out: skein peer tells when it is ready");
     }
     return true;
@@ -88,7 +88,9 @@ void refuse_process_start(const XmlElement& element) {
     element.findings().error(where, what + " is for processes, and this CSP has none",
                              "write process=\"own\", or set it at the <peer>");
   };
-  if (const auto cpus = element.maybe_attribute(kCpus)) refuse(cpus->where, kCpus);
+  for (const char* name : {kCpus, "program"}) {
+    if (const auto attribute = element.maybe_attribute(name)) refuse(attribute->where, name);
+  }
   for (const char* name : {"environment", "argument"}) {
     for (const auto& child : element.children(name)) {
       refuse(child.where(), "<" + std::string(name) + ">");

@@ -190,7 +190,7 @@ LaunchPlan make_launch_plan(const profile::MissionProfile& mission, const MakeAr
     for (const auto& csp : peer.csps) {
       if (csp.process != profile::CspProcess::Own) continue;
       add({peer.name + "/" + csp.name, argv_of(peer, &csp, make_argv), csp.start.environment,
-           csp.rules, false, true, 0, order.prerequisites(i, &csp)});
+           csp.rules, false, csp.start.tells_ready, 0, order.prerequisites(i, &csp)});
     }
   }
   return plan;

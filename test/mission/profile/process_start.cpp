@@ -14,6 +14,22 @@ TEST_CASE("A peer may be any program, with or without a description") {
       process_cpus="0-1"/>)") == "");
 }
 
+TEST_CASE("A CSP in a process of its own may be any program, which obeys what programs obey") {
+  ProfileFolder folder;
+  const auto check = [&](const std::string& attributes, const std::string& content) {
+    return folder.check(
+        R"(<peer name="n" component="n.xml"><csp component="p.xml" process="own" )" + attributes +
+        ">" + content + R"(</csp></peer><peer name="f" component="f.xml"/>)");
+  };
+  CHECK(check(R"(program="python3" ready="told" restart="always" process_cpus="0")",
+              R"(<argument value="p.py"/><environment name="A" value="1"/>)") == "");
+  CHECK_THAT(check(R"(program="true" plugin="x" vendor="fastdds")",
+                   R"(<parameter name="Time limit" value="1"/>)"),
+             Catch::Contains("error: plugin has no effect on a program of one's own") &&
+                 Catch::Contains("error: vendor has no effect on a program of one's own") &&
+                 Catch::Contains("error: <parameter> has no effect on a program of one's own"));
+}
+
 TEST_CASE("What nobody would obey at a program is a finding") {
   ProfileFolder folder;
   const auto [attributes, content, word] = GENERATE(table<std::string, std::string, std::string>({
@@ -41,7 +57,7 @@ TEST_CASE("Mistakes in how a process is started are findings") {
   ProfileFolder folder;
   const auto [attributes, content, finding] =
       GENERATE(table<std::string, std::string, std::string>({
-          {"ready=\"told\"", "", "ready is for a peer with a program of its own"},
+          {"ready=\"told\"", "", "ready is for a program of one's own"},
           {"process_cpus=\"0,x\"", "", "\"0,x\" is no list of CPUs"},
           {"", "<environment name=\"A B\" value=\"1\"/>", "is no name of an environment variable"},
           {"", "<environment name=\"SKEIN_READY_FD\" value=\"1\"/>", "is set by the launcher"},
@@ -62,9 +78,10 @@ TEST_CASE("Mistakes in how a process is started are findings") {
 TEST_CASE("A CSP without a process of its own has nothing to start") {
   ProfileFolder folder;
   const auto text = folder.check(R"(<peer name="n" component="n.xml">
-<csp component="p.xml" process_cpus="0"><environment name="A" value="1"/>
+<csp component="p.xml" process_cpus="0" program="p"><environment name="A" value="1"/>
 <argument value="1"/></csp></peer>)");
   CHECK_THAT(text, Catch::Contains("m.xml:3:24: error: process_cpus is for processes") &&
+                       Catch::Contains("error: program is for processes") &&
                        Catch::Contains("error: <environment> is for processes") &&
                        Catch::Contains("error: <argument> is for processes"));
 }
