@@ -1,4 +1,4 @@
-"""The command skein-idl: compiles IDL to C++, C and Python, and to plain DDS IDL."""
+"""The command skein-idl: compiles IDL to C++, Ada, C, Java and Python, and to plain DDS IDL."""
 
 import argparse
 import os
@@ -6,6 +6,7 @@ import re
 import sys
 
 import names
+from back_end.ada_names import Clash
 from compilation import Compilation
 from front_end import source
 from report import printable
@@ -32,7 +33,7 @@ def main():
 
 
 def _arguments():
-    options = _Options(prog="skein-idl", description="Compiles IDL (OMG IDL 4.2) to C++, C and Python, and to plain DDS IDL.")
+    options = _Options(prog="skein-idl", description="Compiles IDL (OMG IDL 4.2) to C++, Ada, C, Java and Python, and to plain DDS IDL.")
     options.add_argument("files", metavar="FILE", nargs="+", help="x.idl becomes x.idl.hpp, x.idl.cpp and x.dds.idl")
     options.add_argument("-I", dest="folders", metavar="DIR", action="append", default=[],
                          help="look for included files there; the output of a file below DIR keeps its path from there")  # fmt: skip
@@ -41,8 +42,8 @@ def _arguments():
     options.add_argument("--namespace", metavar="NAME", type=_namespace, default=(),
                          help="put all C++ names into this namespace, `a::b`; included files must be compiled with the same")  # fmt: skip
     options.add_argument("--depfile", metavar="FILE", help="write what the output depends on, as make and ninja read it")
-    options.add_argument("--language", choices=("c++", "c", "java", "python"), default="c++",
-                         help="`c`: x.idl becomes x.idl.h and x.idl.c; `python`: x_idl.py and x_idl.pyi; default: c++")  # fmt: skip
+    options.add_argument("--language", choices=("ada", "c", "c++", "java", "python"), default="c++",
+                         help="`c`: x.idl becomes x.idl.h and x.idl.c; `python`: x_idl.py and x_idl.pyi; `ada`: x_idl.ads and x_idl.adb; default: c++")  # fmt: skip
     options.add_argument("--check", action="store_true", help="write nothing, say every problem, and count the accepted files")
     arguments = options.parse_args()
     if arguments.depfile and len(arguments.files) > 1:
@@ -66,6 +67,8 @@ def _compiled(path, arguments):
     if compilation.accepted and not arguments.check:
         try:
             compilation.write(arguments.out, _name(path, [*arguments.folders, *_OWN_FOLDERS]), arguments.depfile, arguments.language)
+        except Clash as clash:
+            return _refused(path, str(clash))
         except OSError as error:
             return _refused(error.filename or arguments.out, f"cannot be written: {error.strerror}; name another folder by --output")
     return compilation.accepted

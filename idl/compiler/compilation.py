@@ -4,7 +4,7 @@ import os
 import sys
 
 import model
-from back_end import analysis, c_output, flattened, java_output, keys, output, python_output
+from back_end import ada_output, analysis, c_output, flattened, java_output, keys, output, python_output
 from front_end import builder, parser, pragmas, source
 from report import Place, Report, TooManyErrors
 
@@ -59,11 +59,14 @@ class Compilation:
             items=self._built.items,
             interfaces=self._built.interfaces,
             announced=self._built.announced(),
+            all_items=[item for item in self._built.all_items if item.place.file not in self._built.broken],
+            included=self._source.included,
         )
         base = os.path.join(folder, name)
         made = c_output if language == "c" else output
-        if language in ("java", "python"):
-            outputs = {"java": java_output, "python": python_output}[language].outputs(file, base, self._name_of)
+        of_its_own = {"ada": ada_output, "java": java_output, "python": python_output}
+        if language in of_its_own:
+            outputs = of_its_own[language].outputs(file, base, self._name_of)
         else:
             outputs = {  # in the order of skein_add_idl, which make and ninja ask for
                 base.removesuffix(".idl") + ".dds.idl": flattened.text(file),

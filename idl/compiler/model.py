@@ -155,6 +155,7 @@ class Declaration:
         return "_".join(self.scope[len(self.modules) :])
 
     modules: tuple = ()  # the IDL modules around it
+    openings: tuple = ()  # for each of them, how often the file has opened it anew
     text: str = None  # its canonical text, once that was asked
 
 
@@ -359,3 +360,5 @@ class File:
     items: list  # Declarations of this file in order, what is nested before what encloses it
     interfaces: list  # defined in this file
     announced: list  # interfaces that this file names, defined here or not
+    all_items: list = ()  # of included files, too
+    included: dict = field(default_factory=dict)  # path: those that it includes, and so on

@@ -14,7 +14,7 @@ def analyse(builder, report):
     decls = [decl for decl in builder.items if not isinstance(decl, model.Forward)]
     for decl in builder.declarations.values():
         if isinstance(decl, (model.Struct, model.Union)):
-            decl.recursive = _reaches(decl, decl, set())
+            decl.recursive = reaches(decl, decl)
     _choose_initial_cases(builder.declarations.values())
     for decl in decls:
         if isinstance(decl, (model.Struct, model.Union)) and decl.recursive and _is_without_end(decl):
@@ -48,6 +48,11 @@ def parts(decl):
     if isinstance(decl, model.Typedef):
         return [decl.type]
     return []
+
+
+def reaches(decl, goal):
+    """Whether a type has the declaration within it."""
+    return _reaches(decl, goal, set())
 
 
 def _reaches(decl, goal, seen):

@@ -40,6 +40,7 @@ class Builder(Types, Structures, Enumerations, Interfaces):
         self.source = source
         self.report = report
         self.items = []
+        self.all_items = []  # of included files, too
         self.interfaces = []
         self.declarations = {}
         self.broken = {}  # file -> cause of its first refusal
@@ -49,6 +50,8 @@ class Builder(Types, Structures, Enumerations, Interfaces):
         self._comments = comments.Comments(source)
         self._scope = self.root = scopes.Scope()
         self._modules = ()
+        self._openings = ()  # see model.Declaration
+        self._opened = {}  # file, modules, openings: how often
         self._hashed = False  # by @autoid of an enclosing module
         self._outer = []  # enclosing structs, unions, interfaces
         self._cause = None  # of the last refusal
@@ -79,12 +82,12 @@ class Builder(Types, Structures, Enumerations, Interfaces):
             noted, declared = tree.children
             if self._was_read(declared):
                 continue
-            scope, depth, modules = self._scope, len(self._outer), self._modules
+            scope, depth, modules, openings = self._scope, len(self._outer), self._modules, self._openings
             try:
                 getattr(self, "_" + declared.data, self._refused)(declared, self._read_annotations(declared.data, noted))
             except constants.Fault as fault:
                 self._fault(fault)
-                self._scope, self._modules = scope, modules
+                self._scope, self._modules, self._openings = scope, modules, openings
                 del self._outer[depth:]
                 self._abandon(declared)
 
@@ -212,6 +215,7 @@ class Builder(Types, Structures, Enumerations, Interfaces):
             documentation=self._documentation(tree),
             in_main_file=place.file == self.source.path,
             modules=self._modules,
+            openings=self._openings,
             **fields,
         )
         self.declarations[path] = decl
@@ -239,6 +243,7 @@ class Builder(Types, Structures, Enumerations, Interfaces):
         """Joins what is generated; also known to what encloses it, which keeps an alias."""
         if self._outer:
             self._outer[-1].nested.append(decl)
+        self.all_items.append(decl)
         if decl.in_main_file:
             self.items.append(decl)
 
@@ -255,8 +260,11 @@ class Builder(Types, Structures, Enumerations, Interfaces):
         self._scope, scope = found.scope, self._scope
         hashed, self._hashed = self._hashed, self._by_hash(noted)
         self._modules += (plain,)
+        opened = (self._place(name).file, self._modules, self._openings)
+        self._opened[opened] = self._opened.get(opened, 0) + 1
+        self._openings += (self._opened[opened],)
         self._each(definitions)
-        self._modules = self._modules[:-1]
+        self._modules, self._openings = self._modules[:-1], self._openings[:-1]
         self._hashed = hashed
         self._scope = scope
 

@@ -42,6 +42,7 @@ class Interfaces:
             self._base(interface, base)
         self._contents(interface, exports)
         self._scope = outer
+        self.all_items.append(interface)
         if interface.in_main_file:
             self.items.append(interface)
             self.interfaces.append(interface)
