@@ -1,0 +1,3 @@
+with Ada.Containers.Vectors;
+
+package Skein.Sequences.Floats is new Ada.Containers.Vectors (Positive, Float);
