@@ -1,0 +1,19 @@
+--  Between an object of Ada and the callbacks that C makes for it.
+private package Skein.Gates is
+
+   protected type Gate is
+      --  C makes no callbacks any more.
+      procedure Close;
+      --  Until then.
+      entry Wait;
+      --  The object of Ada goes while C may still make some. Is_Closed: none will come, after all.
+      procedure Detach (Is_Closed : out Boolean);
+      function Is_Detached return Boolean;
+   private
+      Closed, Detached : Boolean := False;
+   end Gate;
+
+   --  Of a callback that found its object gone, and of one whose object could not be freed.
+   Gone : constant String := "its object was finalized in a callback of its own";
+
+end Skein.Gates;
