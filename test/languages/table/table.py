@@ -14,7 +14,7 @@ FEATURES = ("call", "provide", "asynchronous", "stream", "topics", "CSP", "cance
 # A transport: vendors of the provider and of the caller, and whether calls may go through shared memory.
 TRANSPORTS = {"Fast DDS": ("fastdds", "fastdds", "no"), "Cyclone DDS": ("cyclonedds", "cyclonedds", "no"), "shared memory": ("fastdds", "cyclonedds", "yes")}
 MARKS = {"Fast DDS": "F", "Cyclone DDS": "C", "shared memory": "M"}
-LANGUAGES = 4  # of a machine with all that they need
+LANGUAGES = 5  # of a machine with all that they need
 HEADS = ("C++", "C", "Python")  # whose callers have a Head, which judges CSPs
 
 
