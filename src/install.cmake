@@ -28,7 +28,7 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/mission_profiles DESTINATION ${CMAKE_INS
 
 # What README and GUIDE point to is installed with them, as far as it can be read without the source tree.
 set(source ${PROJECT_SOURCE_DIR})
-file(GLOB documents RELATIVE ${source} CONFIGURE_DEPENDS ${source}/examples/0*/* ${source}/examples/route_planning/*.svg
+file(GLOB documents RELATIVE ${source} CONFIGURE_DEPENDS ${source}/examples/[0-9]*/* ${source}/examples/route_planning/*.svg
   ${source}/examples/reconnaissance/*.png
   ${source}/test/guide/*.*)
 # Example 06 names files of the profiles beside it.

@@ -47,6 +47,7 @@ const std::map<std::string, std::string> kExempt{
     {"08_calling_from_c", "it ends by itself"},
     {"09_in_python", "a test of its own runs it, where Skein for Python is built"},
     {"10_in_java", "likewise"},
+    {"11_in_ada", "likewise"},
     {"04_telemetry", "its peers have topics alone"},
     {"05_voting_sensors", "both entities are one process, which ends after its own calls"},
     {"07_answering_later", "its entities are one process, which ends after its own calls"},
