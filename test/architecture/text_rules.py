@@ -11,6 +11,7 @@ _SLEEP = re.compile(r"\b(sleep_for|sleep_until|usleep|nanosleep|time\.sleep)\b|\
 # The only tests that sleep, and why.
 SLEEPERS = {
     "test/tools/eventually.hpp": "looks again at a condition",
+    "test/languages/mission/flight.py": "looks again at a condition",
     "test/languages/python/tools.py": "looks again at a condition",
     "test/languages/table/peer.py": "looks again at a condition, and takes its time",
     "test/languages/table/table_peer_c.c": "looks again at a condition, and takes its time",
