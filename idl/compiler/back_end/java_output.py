@@ -7,7 +7,7 @@ import re
 
 import model
 
-from . import analysis, c_types, description
+from . import ada_names, analysis, c_types, description
 
 _KEYWORDS = frozenset(
     """abstract assert boolean break byte case catch char class const continue default do double else enum extends final finally float for goto if
@@ -15,26 +15,35 @@ _KEYWORDS = frozenset(
     this throw throws transient try void volatile while true false null _""".split()
 )
 _RESERVED = _KEYWORDS | {"getClass", "notify", "notifyAll", "wait", "hashCode", "equals", "toString", "clone", "finalize", "within", "close", "call", "start",
-                         "stream", "connect", "provide", "members", "support", "CODEC", "TYPE", "discriminator", "value"}  # fmt: skip
+                         "stream", "connect", "provide", "members", "support", "Proxy", "Wire", "CODEC", "TYPE", "discriminator", "value"}  # fmt: skip
 # IDL: (primitive, boxed, codec, initial value)
 _PRIMITIVES = {
-    "boolean": ("boolean", "Boolean", "BOOLEAN", "false"), "char": ("char", "Character", "CHAR", "'\\0'"), "wchar": ("char", "Character", "WIDE_CHAR", "'\\0'"),
-    "int8": ("byte", "Byte", "INT8", "0"), "octet": ("int", "Integer", "OCTET", "0"), "short": ("short", "Short", "SHORT", "0"),
-    "unsigned short": ("int", "Integer", "UNSIGNED_SHORT", "0"), "long": ("int", "Integer", "LONG", "0"),
-    "unsigned long": ("long", "Long", "UNSIGNED_LONG", "0"), "long long": ("long", "Long", "LONG_LONG", "0"),
-    "unsigned long long": ("long", "Long", "LONG_LONG", "0"), "float": ("float", "Float", "FLOAT", "0"), "double": ("double", "Double", "DOUBLE", "0"),
-    "long double": ("double", "Double", "LONG_DOUBLE", "0"),
+    "boolean": ("boolean", "java.lang.Boolean", "BOOLEAN", "false"), "char": ("char", "java.lang.Character", "CHAR", "'\\0'"), "wchar": ("char", "java.lang.Character", "WIDE_CHAR", "'\\0'"),
+    "int8": ("byte", "java.lang.Byte", "INT8", "0"), "octet": ("int", "java.lang.Integer", "OCTET", "0"), "short": ("short", "java.lang.Short", "SHORT", "0"),
+    "unsigned short": ("int", "java.lang.Integer", "UNSIGNED_SHORT", "0"), "long": ("int", "java.lang.Integer", "LONG", "0"),
+    "unsigned long": ("long", "java.lang.Long", "UNSIGNED_LONG", "0"), "long long": ("long", "java.lang.Long", "LONG_LONG", "0"),
+    "unsigned long long": ("long", "java.lang.Long", "LONG_LONG", "0"), "float": ("float", "java.lang.Float", "FLOAT", "0"), "double": ("double", "java.lang.Double", "DOUBLE", "0"),
+    "long double": ("double", "java.lang.Double", "LONG_DOUBLE", "0"),
 }  # fmt: skip
 _OCTET = model.Primitive("octet")
 _EXTENSIBILITIES = {"final": "PLAIN", "appendable": "DELIMITED", "mutable": "PARAMETERS"}
 
 
+_packages = set()  # first parts of the packages in use, which no other name may hide
+
+
 def _name(idl):
-    return idl + "_" if idl in _RESERVED else idl
+    return idl + "_" if idl in _RESERVED or idl in _packages else idl
+
+
+def _part(idl):
+    """Of a package's name."""
+    made = idl + "_" if idl in _RESERVED or idl in ("java", "skein") else idl
+    return "_" + made if made[:1].isdigit() else made
 
 
 def _package(decl):
-    return [_name(part) for part in decl.modules] or [_name(re.sub(r"\W", "_", os.path.basename(decl.place.file).removesuffix(".idl")))]
+    return [_part(part) for part in decl.modules] or [_part(re.sub(r"\W", "_", os.path.basename(decl.place.file).removesuffix(".idl")))]
 
 
 def _class(decl):
@@ -50,11 +59,13 @@ def _types_class(decl):
 
 def outputs(file, base, _):
     """{path: lines}"""
+    _packages.clear()
+    _packages.update({"java", "skein"}, (_package(item)[0] for item in file.all_items))
     folder = os.path.dirname(base)
     declared = [item for item in file.items if isinstance(item, model.Declaration) and not isinstance(item, model.Typedef)]
     outer = [item for item in declared if len(item.scope) == len(item.modules) + 1 and not isinstance(item, model.Constant)]
     inner = [item for item in declared if len(item.scope) > len(item.modules) + 1]
-    made = {}
+    made = _Files()
     for item in outer:
         nested = [each for each in inner if each.scope[: len(item.scope)] == item.scope]
         made[_path(folder, _package(item), _name(item.scope[-1]))] = _file(file, _package(item), _declared(item, nested))
@@ -67,6 +78,13 @@ def outputs(file, base, _):
     return made
 
 
+class _Files(dict):
+    def __setitem__(self, path, lines):
+        if path in self:
+            raise ada_names.Clash(f"two declarations would both become {path}; give one of them another name")
+        super().__setitem__(path, lines)
+
+
 def _path(folder, package, name):
     return os.path.join(folder, *package, name + ".java")
 
@@ -76,7 +94,7 @@ def _file(file, package, lines):
 
 
 def _types(name, described, constants):
-    lines = [f"/** The types of one IDL file{' and its constants' if constants else ''}. */", '@SuppressWarnings("cast")', f"public final class {name} {{"]
+    lines = [f"/** The types of one IDL file{' and its constants' if constants else ''}. */", '@java.lang.SuppressWarnings("cast")', f"public final class {name} {{"]
     lines += [f"  public static final {_type(each.type)} {_name(each.scope[-1])} = {_literal(each.type, each.value)};" for each in constants]
     if described:
         lines += [f"  public static final skein.InterfaceType TYPES = new skein.InterfaceType({_text(described)}, java.util.Map.of());"]
@@ -87,11 +105,11 @@ def _text(text):
     """A long text in pieces that a class file can hold."""
     if len(text) < 60000:
         return f'"{text}"'
-    return "String.join(" + ", ".join(['""', *(f'"{text[at : at + 60000]}"' for at in range(0, len(text), 60000))]) + ")"
+    return "java.lang.String.join(" + ", ".join(['""', *(f'"{text[at : at + 60000]}"' for at in range(0, len(text), 60000))]) + ")"
 
 
 def _said(decl, indent=""):
-    text = [line.replace("*/", "* /") for line in getattr(decl, "documentation", [])]
+    text = [line.replace("*/", "* /").replace("\\", "&#92;") for line in getattr(decl, "documentation", [])]
     return [f"{indent}/** {' '.join(text)} */"] if text else []
 
 
@@ -108,7 +126,7 @@ def _declared(item, nested):
             body.append(f"public static final {_type(each.type)} {_name(each.scope[-1])} = {_literal(each.type, each.value)};")
         else:
             body += ["", *_declared(each, [deeper for deeper in nested if deeper is not each and deeper.scope[: len(each.scope)] == each.scope])]
-    quiet = [] if _is_nested(item) else ['@SuppressWarnings({"cast", "unchecked"})']
+    quiet = [] if _is_nested(item) else ['@java.lang.SuppressWarnings({"cast", "unchecked"})']
     return [*_said(item), *quiet, head + " {", *("  " + line if line else "" for line in body), "}"]
 
 
@@ -120,7 +138,7 @@ def _type(kind, boxed=False):
     if isinstance(kind, model.Primitive):
         return _PRIMITIVES[kind.idl][1 if boxed else 0]
     if isinstance(kind, (model.String, model.WideString)):
-        return "String"
+        return "java.lang.String"
     if isinstance(kind, (model.Sequence, model.Array)):
         return "byte[]" if model.unaliased(kind.element) == _OCTET else f"java.util.List<{_type(kind.element, True)}>"
     if isinstance(kind, model.Map):
@@ -130,7 +148,7 @@ def _type(kind, boxed=False):
     if isinstance(kind, model.Reference):
         return "skein.Reference"
     if isinstance(kind.decl, model.Bitmask):
-        return "Long" if boxed else "long"
+        return "java.lang.Long" if boxed else "long"
     return _class(kind.decl)
 
 
@@ -220,7 +238,9 @@ def _literal(kind, value):
     if isinstance(value, float) or spelled in ("double", "float"):
         return f"({spelled}) {float(value)!r}" if abs(float(value)) != float("inf") else f"{_type(kind, True)}.{'POS' if value > 0 else 'NEG'}ITIVE_INFINITY"
     number = value - (1 << 64) if value >= 1 << 63 else value
-    return f"{number}L" if spelled == "long" else f"({spelled}) {number}"
+    if spelled == "long":
+        return f"({number}L)" if number < 0 else f"{number}L"
+    return f"({spelled}) {number}"
 
 
 def _escaped(character):
@@ -263,7 +283,7 @@ def _bitmask(item, static):
     name = _name(item.scope[-1])
     flags = [f"public static final long {_name(idl)} = 1L << {position};" for idl, _, position, _ in item.flags]
     return f"public {static}final class {name}", [
-        *flags, f"public static final skein.Codec<Long> CODEC = skein.Codec.numbered({item.bits}, false, each -> each, each -> each"
+        *flags, f"public static final skein.Codec<java.lang.Long> CODEC = skein.Codec.numbered({item.bits}, false, each -> each, each -> each"
         + (f" & {(1 << item.bits) - 1:#x}L" if item.bits < 64 else "") + ");", "", f"private {name}() {{}}"]  # fmt: skip
 
 
@@ -289,7 +309,7 @@ def _is_signed(field):
 
 
 def _members_function(names):
-    return ["@Override", "protected Object[] members() {", f"  return new Object[] {{{', '.join(map(_name, names))}}};", "}"]
+    return ["@java.lang.Override", "protected java.lang.Object[] members() {", f"  return new java.lang.Object[] {{{', '.join(map(_name, names))}}};", "}"]
 
 
 def _representation(decl):
@@ -314,7 +334,7 @@ def _struct(item, static):
     lines += ["", f"public static final skein.Codec<{name}> CODEC =", ",\n  ".join(codec) + ");", "", *_members_function([each.name for each in members])]
     if isinstance(item, model.Exception_):
         support = f"skein.UserException.Support<>(\"{item.idl_name}\", {_representation(item)}, CODEC)"
-        lines += ["", "@Override", "protected skein.UserException.Support<?> support() {", f"  return new {support};", "}"]
+        lines += ["", "@java.lang.Override", "protected skein.UserException.Support<?> support() {", f"  return new {support};", "}"]
         return f"public {static}final class {name} extends skein.UserException", lines
     return f"public {static}final class {name} extends skein.Struct", [*lines, "", *_support(item, name)]
 
@@ -333,19 +353,19 @@ def _member(struct, member, access):
 def _union(item, static):
     name, discriminator = _name(item.scope[-1]), _type(item.discriminator, True)
     lines = [f"public {name}() {{", f"  this({_label(item, item.initial_case)}, {_boxed_initial(item.initial_case.type)});", "}", "",
-             f"public {name}({discriminator} discriminator, Object value) {{", "  super(discriminator, value);", "}"]  # fmt: skip
+             f"public {name}({discriminator} discriminator, java.lang.Object value) {{", "  super(discriminator, value);", "}"]  # fmt: skip
     for case in item.cases:
         kind = _type(case.type)
         lines += ["", *_said(case), f"public static {name} {_name(case.name)}({kind} value) {{", f"  return new {name}({_label(item, case)}, value);", "}", "",
                   f"public {kind} {_name(case.name)}() {{",
-                  f"  if (selected(discriminator) != {_constant(case)}) throw new IllegalStateException(this + \" does not hold '{case.name}'\");",
+                  f"  if (selected(discriminator) != {_constant(case)}) throw new java.lang.IllegalStateException(this + \" does not hold '{case.name}'\");",
                   f"  return ({_type(case.type, True)}) value;", "}"]  # fmt: skip
     lines += [""]
     for case in item.cases:
-        lines += [f"private static final skein.Codec.Member<{name}, Object> {_constant(case)} =",
-                  f'    skein.Codec.member("{case.name}", {case.id}, false, false, (skein.Codec<Object>) (skein.Codec<?>) {_codec(case.type)}, u -> u.value, '
+        lines += [f"private static final skein.Codec.Member<{name}, java.lang.Object> {_constant(case)} =",
+                  f'    skein.Codec.member("{case.name}", {case.id}, false, false, (skein.Codec<java.lang.Object>) (skein.Codec<?>) {_codec(case.type)}, u -> u.value, '
                   "(u, v) -> u.value = v);"]  # fmt: skip
-    lines += ["", f"private static skein.Codec.Member<{name}, Object> selected({discriminator} discriminator) {{"]
+    lines += ["", f"private static skein.Codec.Member<{name}, java.lang.Object> selected({discriminator} discriminator) {{"]
     otherwise = "null"
     for case in item.cases:
         otherwise = _constant(case) if None in case.labels else otherwise
@@ -376,7 +396,7 @@ def _label(union, case):
     if isinstance(kind, model.Named):
         return _literal(kind, next((idl for idl, _, _ in kind.decl.enumerators if idl not in taken), kind.decl.enumerators[0][0]))
     if kind.idl == "boolean":
-        return _literal(kind, False not in taken and 0 not in taken and False)
+        return _literal(kind, False in taken or 0 in taken)
     numbers = (chr(number) if "char" in kind.idl else number for number in range(len(taken) + 1))
     return _boxed_literal(kind, next(each for each in numbers if each not in taken))
 
@@ -392,8 +412,12 @@ def _interface(item, static):
     name = _name(item.scope[-1])
     operations = item.all_operations()
     lines, proxy, methods = [], [], []
+    taken = set()
     for operation in operations:
         method = _operation_name(operation)
+        while {method, method + "Async"} & taken:
+            method += "_"
+        taken |= {method, method + "Async"}
         inputs = [(_name(p.name), _type(p.type)) for p in operation.parameters if p.is_in]
         given = ", ".join(f"{kind} {each}" for each, kind in inputs)
         passed = ", ".join(each for each, _ in inputs)
@@ -403,7 +427,7 @@ def _interface(item, static):
             lines += [f"record {result}({parts}) {{}}", ""]
         lines += _said(operation)
         if operation.stream:
-            lines += [f"void {method}({given}{', ' if given else ''}java.util.function.Consumer<{_boxed(operation)}> items);", ""]
+            lines += [f"void {method}({given}{', ' if given else ''}java.util.function.Consumer<{_boxed(operation)}> items$);", ""]
         else:
             lines += [f"{result} {method}({given});", ""]
         proxy += _calls(operation, method, given, passed, result)
@@ -425,7 +449,7 @@ def _interface(item, static):
               "/** Waits for a provider. */", "static Proxy connect(skein.Entity entity, skein.Proxy.Choice choice) {", "  return new Proxy(entity, choice);", "}", "",
               f"static skein.Provider provide(skein.Entity entity, {name} service) {{", "  return provide(entity, service, new skein.Provider.Options());", "}", "",
               f"static skein.Provider provide(skein.Entity entity, {name} service, skein.Provider.Options options) {{",
-              "  java.util.Map<String, skein.Provider.Method> methods = new java.util.HashMap<>();", *("  " + line for line in methods),
+              "  java.util.Map<java.lang.String, skein.Provider.Method> methods = new java.util.HashMap<>();", *("  " + line for line in methods),
               f"  return new skein.Provider(entity, TYPE, java.util.List.of({', '.join('Wire.' + _constant(each) for each in operations)}), methods, options);",
               "}"]  # fmt: skip
     return f"public interface {name}", lines
@@ -440,7 +464,7 @@ def _result(operation):
 
 def _boxed(operation):
     members = operation.out_struct.members
-    return "Void" if not members else _type(members[0].type, True) if len(members) == 1 else _result(operation)
+    return "java.lang.Void" if not members else _type(members[0].type, True) if len(members) == 1 else _result(operation)
 
 
 def _operation(interface, operation):
@@ -465,7 +489,7 @@ def _from_results(operation, results):
 def _to_results(operation, value):
     members = operation.out_struct.members
     parts = [value] if len(members) == 1 else [f"{value}.{_name(each.name)}()" for each in members]
-    return f"new Object[] {{{', '.join(parts)}}}"
+    return f"new java.lang.Object[] {{{', '.join(parts)}}}"
 
 
 def _calls(operation, method, given, passed, result):
@@ -475,11 +499,11 @@ def _calls(operation, method, given, passed, result):
     if result == "void":
         blocking, later = [f"  call({arguments});"], "null"
     else:
-        blocking = [f"  Object[] results = call({arguments});", f"  return {_from_results(operation, 'results')};"]
-        later = _from_results(operation, "results")
+        blocking = [f"  java.lang.Object[] results$ = call({arguments});", f"  return {_from_results(operation, 'results$')};"]
+        later = _from_results(operation, "results$")
     return ["", f"public {result} {method}({given}) {{", *blocking, "}", "",
             f"public java.util.concurrent.CompletableFuture<{_boxed(operation)}> {method}Async({given}) {{",
-            f"  return start(results -> {later}, {arguments});", "}"]  # fmt: skip
+            f"  return start(results$ -> {later}, {arguments});", "}"]  # fmt: skip
 
 
 def _method(operation, method):
@@ -489,7 +513,7 @@ def _method(operation, method):
         passed.append(f"item -> items.accept({_to_results(operation, 'item')})")
         body = f"service.{method}({', '.join(passed)}); return null;"
     elif not operation.out_struct.members:
-        body = f"service.{method}({', '.join(passed)}); return new Object[0];"
+        body = f"service.{method}({', '.join(passed)}); return new java.lang.Object[0];"
     else:
         body = f"{_result(operation)} result = service.{method}({', '.join(passed)}); return {_to_results(operation, 'result')};"
     return f'methods.put("{operation.name}", (given, items) -> {{ {body} }});'
