@@ -137,6 +137,20 @@ class BuoyTest {
   }
 
   @Test
+  void anExceptionThatCannotBeToldIsToldAsSuch() {
+    server.close();
+    server = Peer.entity("server", Peer.SERVER, Duration.ZERO);
+    IBuoy.provide(server, new Buoy() {
+      @Override
+      public IBuoy.WindResult wind(int level, double at) {
+        throw new Fog(null, at);
+      }
+    });
+    IBuoy.Proxy failing = IBuoy.connect(client, patiently()).within(Peer.PATIENCE);
+    assertTrue(assertThrows(InvalidArgument.class, () -> failing.wind(1, 1)).getMessage().contains("harbour::Fog.why is null"));
+  }
+
+  @Test
   void aCspServesItsOwnerAlone() {
     Provider.Options options = new Provider.Options();
     options.csp = "Java";

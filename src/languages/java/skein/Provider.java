@@ -63,6 +63,8 @@ public final class Provider implements AutoCloseable {
 
   /** {@code methods} by the names of operations; used by generated code. */
   public Provider(Entity entity, InterfaceType type, List<InterfaceType.Operation> operations, Map<String, Method> methods, Options given) {
+    if (given.threads < 0) throw new InvalidArgument("a service has 1 thread at least, and was given " + given.threads);
+    long handleOfType = type.handle();
     C.ServiceOptions options = new C.ServiceOptions();
     List<Pointer> kept = new ArrayList<>();
     options.attributes = attributes(given.attributes, kept);
@@ -77,10 +79,11 @@ public final class Provider implements AutoCloseable {
     };
     C.Callbacks callbacks = CallbackKeeper.keep(answer);
     LongByReference out = new LongByReference();
-    if (C.skein_provider_new(entity.handle, type.handle(), options, callbacks, out, SkeinException.sink()) == 0) {
+    if (C.skein_provider_new(entity.handle, handleOfType, options, callbacks, out, SkeinException.sink()) == 0) {
       CallbackKeeper.drop(callbacks);
       throw SkeinException.of(SkeinException.sink(), type);
     }
+    java.lang.ref.Reference.reachabilityFence(kept);
     handle = out.getValue();
   }
 
@@ -127,7 +130,7 @@ public final class Provider implements AutoCloseable {
   private static void finish(InterfaceType type, InterfaceType.Operation operation, Object[] results, long reply) {
     try (Message message = new Message(operation.out().encode(operation.outRepresentation(), results, operation.name()))) {
       SkeinException.check(C.skein_reply_answer(reply, message.value(), SkeinException.sink()), null);
-    } catch (RuntimeException error) {
+    } catch (Throwable error) {
       fail(type, error, reply);
     }
   }
@@ -139,9 +142,13 @@ public final class Provider implements AutoCloseable {
   }
 
   private static void fail(InterfaceType type, Throwable error, long reply) {
-    if (error instanceof UserException declared && raise(type, declared, reply)) return;
-    String text = error instanceof SkeinException ? error.getMessage() : error.toString();
-    C.skein_reply_fail(reply, SkeinException.kindOf(error), text, 0);
+    try {
+      if (error instanceof UserException declared && raise(type, declared, reply)) return;
+      String text = error instanceof SkeinException ? error.getMessage() : error.toString();
+      C.skein_reply_fail(reply, SkeinException.kindOf(error), text, 0);
+    } catch (Throwable wrong) {
+      C.skein_reply_fail(reply, SkeinException.kindOf(wrong), error + ", which cannot be told: " + wrong.getMessage(), 0);
+    }
   }
 
   private static boolean raise(InterfaceType type, UserException error, long reply) {

@@ -71,19 +71,16 @@ public abstract class Proxy implements AutoCloseable {
   protected final <R> CompletableFuture<R> start(Function<Object[], R> result, InterfaceType.Operation operation, Object... arguments) {
     Begun<R> future = new Begun<>();
     C.OnResult tell = (user, value, error) -> {
-      if (value == null) {
-        future.completeExceptionally(SkeinException.of(error, type));
-        return;
-      }
       try {
-        future.complete(result.apply(results(operation, SkeinException.bytes(value))));
-      } catch (RuntimeException wrong) {
+        if (value == null) future.completeExceptionally(SkeinException.of(error, type));
+        else future.complete(result.apply(results(operation, SkeinException.bytes(value))));
+      } catch (Throwable wrong) {
         future.completeExceptionally(wrong);
       }
     };
-    C.Callbacks callbacks = CallbackKeeper.keep(tell);
     LongByReference out = new LongByReference();
     try (Message message = message(operation, arguments)) {
+      C.Callbacks callbacks = CallbackKeeper.keep(tell);
       if (C.skein_proxy_start(handle, operation.name(), message.value(), timeout, callbacks, out, SkeinException.sink()) == 0) {
         CallbackKeeper.drop(callbacks);
         throw SkeinException.of(SkeinException.sink(), type);
