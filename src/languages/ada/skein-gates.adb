@@ -12,11 +12,16 @@ package body Skein.Gates is
          null;
       end Wait;
 
-      procedure Detach (Is_Closed : out Boolean) is
+      procedure Detach is
       begin
          Detached := True;
-         Is_Closed := Closed;
       end Detach;
+
+      procedure Leave (Is_Last : out Boolean) is
+      begin
+         Is_Last := One_Has_Left;
+         One_Has_Left := True;
+      end Leave;
 
       function Is_Detached return Boolean is (Detached);
 

@@ -6,11 +6,13 @@ private package Skein.Gates is
       procedure Close;
       --  Until then.
       entry Wait;
-      --  The object of Ada goes while C may still make some. Is_Closed: none will come, after all.
-      procedure Detach (Is_Closed : out Boolean);
+      --  The object of Ada goes while C may still make some.
+      procedure Detach;
       function Is_Detached return Boolean;
+      --  Each of both sides needs the gate no more; the last frees it: the other may still have been within.
+      procedure Leave (Is_Last : out Boolean);
    private
-      Closed, Detached : Boolean := False;
+      Closed, Detached, One_Has_Left : Boolean := False;
    end Gate;
 
    --  Of a callback that found its object gone, and of one whose object could not be freed.

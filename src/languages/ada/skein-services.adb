@@ -32,6 +32,16 @@ package body Skein.Services is
       Free (Item);
    end Free_All;
 
+   procedure Leave (Item : in out Registration_Access) is
+      Is_Last : Boolean;
+   begin
+      Item.Gate.Leave (Is_Last);
+      if Is_Last then
+         Free_All (Item);
+      end if;
+      Item := null;
+   end Leave;
+
    package Current is new Ada.Task_Attributes (Reply, 0);
 
    procedure Ignore (Done : Extensions.bool) is null;
@@ -103,11 +113,8 @@ package body Skein.Services is
    procedure On_Close (User : System.Address) is
       Registered : Registration_Access := To_Registration (User);
    begin
-      if Registered.Gate.Is_Detached then
-         Free_All (Registered);
-      else
-         Registered.Gate.Close;
-      end if;
+      Registered.Gate.Close;
+      Leave (Registered);
    exception
       when others =>
          null;
@@ -181,22 +188,17 @@ package body Skein.Services is
    end Provide;
 
    overriding procedure Finalize (Self : in out Provider) is
-      Sink      : Errors.Sink;
-      Is_Closed : Boolean;
+      Sink : Errors.Sink;
    begin
       if Self.Registered = null then
          return;
       elsif Boolean (C.skein_provider_free (Self.Handle, Sink.Id)) then
          Self.Registered.Gate.Wait;
-         Free_All (Self.Registered);
-         return;
+      else
+         Self.Registered.Gate.Detach;
+         Log (Skein.Error, "ada", "a provider goes on until its entity ends, and refuses all calls: " & Gates.Gone);
       end if;
-      Log (Skein.Error, "ada", "a provider goes on until its entity ends, and refuses all calls: " & Gates.Gone);
-      Self.Registered.Gate.Detach (Is_Closed);
-      if Is_Closed then
-         Free_All (Self.Registered);
-      end if;
-      Self.Registered := null;
+      Leave (Self.Registered);
    end Finalize;
 
 end Skein.Services;

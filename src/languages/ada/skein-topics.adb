@@ -21,6 +21,16 @@ package body Skein.Topics is
    function To_Registration is new Ada.Unchecked_Conversion (System.Address, Registration_Access);
    procedure Free is new Ada.Unchecked_Deallocation (Registration, Registration_Access);
 
+   procedure Leave (Item : in out Registration_Access) is
+      Is_Last : Boolean;
+   begin
+      Item.Gate.Leave (Is_Last);
+      if Is_Last then
+         Free (Item);
+      end if;
+      Item := null;
+   end Leave;
+
    Type_Name : constant char_array := To_C (Ada.Strings.Unbounded.To_String (Of_Type.Name));
 
    --  Nothing that they raise may pass: C calls them.
@@ -53,11 +63,8 @@ package body Skein.Topics is
    procedure On_Close (User : System.Address) is
       Registered : Registration_Access := To_Registration (User);
    begin
-      if Registered.Gate.Is_Detached then
-         Free (Registered);
-      else
-         Registered.Gate.Close;
-      end if;
+      Registered.Gate.Close;
+      Leave (Registered);
    exception
       when others =>
          null;
@@ -132,22 +139,17 @@ package body Skein.Topics is
    end Finalize;
 
    overriding procedure Finalize (Self : in out Subscription) is
-      Sink      : Errors.Sink;
-      Is_Closed : Boolean;
+      Sink : Errors.Sink;
    begin
       if Self.Registered = null then
          return;
       elsif Boolean (C.skein_subscription_free (Self.Handle, Sink.Id)) then
          Self.Registered.Gate.Wait;
-         Free (Self.Registered);
-         return;
+      else
+         Self.Registered.Gate.Detach;
+         Log (Skein.Error, "ada", "a subscription goes on until its entity ends, and drops all values: " & Gates.Gone);
       end if;
-      Log (Skein.Error, "ada", "a subscription goes on until its entity ends, and drops all values: " & Gates.Gone);
-      Self.Registered.Gate.Detach (Is_Closed);
-      if Is_Closed then
-         Free (Self.Registered);
-      end if;
-      Self.Registered := null;
+      Leave (Self.Registered);
    end Finalize;
 
 end Skein.Topics;
