@@ -4,9 +4,11 @@
 #include <sys/wait.h>
 
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cerrno>
 #include <chrono>
+#include <cstring>
 #include <future>
 #include <string>
 #include <vector>
@@ -63,6 +65,7 @@ class RunningMission {
 /// Another user's process, which did something, and lives as long as this object.
 class Stranger {
  public:
+  /// `act` returns what it could not do; null if it could do all.
   template <class Act>
   explicit Stranger(const Act& act) {
     int done[2];
@@ -72,17 +75,19 @@ class Stranger {
     if (process_ == 0) {
       constexpr uid_t kAnother = 12'345;
       ::close(end[1]);
-      char byte = ::setuid(kAnother) == 0 && act() ? 1 : 0;
-      if (::write(done[1], &byte, 1) == 1 && ::read(end[0], &byte, 1) >= 0) ::_exit(0);
-      ::_exit(1);
+      const char* const failed = ::setuid(kAnother) == 0 ? act() : "become another user";
+      std::string word = "done";
+      if (failed) word = std::string(failed) + ": " + std::strerror(errno);
+      const bool told = ::write(done[1], word.data(), word.size()) > 0;
+      ::_exit(told && ::read(end[0], word.data(), 1) >= 0 ? 0 : 1);
     }
     ::close(end[0]);
     ::close(done[1]);
     end_ = FileDescriptor(end[1]);
     const FileDescriptor is_done(done[0]);
-    char byte = 0;
-    REQUIRE(::read(is_done.get(), &byte, 1) == 1);
-    REQUIRE(byte == 1);
+    std::array<char, 256> word{};
+    REQUIRE(::read(is_done.get(), word.data(), word.size() - 1) > 0);
+    REQUIRE(std::string(word.data()) == "done");
   }
   ~Stranger() {
     end_.reset();
@@ -193,11 +198,12 @@ TEST_CASE(
   REQUIRE(::getsockname(mission.listener(), reinterpret_cast<sockaddr*>(&address), &size) == 0);
   Stranger stranger([&] {
     static test::LingeringConnection lingering;
-    return lingering.hand_over_to_refuser([&] {
+    const bool refused = lingering.hand_over_to_refuser([&] {
       FileDescriptor client(::socket(AF_UNIX, SOCK_STREAM, 0));
       ::connect(client.get(), reinterpret_cast<const sockaddr*>(&address), size);
       return client;
     });
+    return refused ? nullptr : "hand over a connection and be refused";
   });
   CHECK_THAT(mission.ask("status"), Contains("\"a\""));
 }
@@ -208,17 +214,17 @@ TEST_CASE("Other users' full sockets with launchers' names keep nobody waiting")
     return;
   }
   RunningMission mission({shell_child("a", kWait)});
-  Stranger stranger([] {
+  Stranger stranger([]() -> const char* {
     static std::vector<FileDescriptor> sockets;
     for (int i = 0; i < 5; ++i) {
       const std::string name = "skein-launch-0-7-" + std::to_string(i);
       sockets.push_back(local_socket());
-      if (!listen_at(sockets.back(), name, 0)) return false;
+      if (!listen_at(sockets.back(), name, 0)) return "listen";
       do {
         sockets.push_back(local_socket());
       } while (connect_to(sockets.back(), name) == Reached::Yes);
     }
-    return true;
+    return nullptr;
   });
   const auto begin = std::chrono::steady_clock::now();
   const auto answers = ask_launchers("status");
@@ -261,8 +267,9 @@ TEST_CASE("Another user's process that takes a launcher's name keeps no mission 
   const Stranger stranger([&] {
     static const FileDescriptor socket(::socket(AF_UNIX, SOCK_STREAM, 0));
     const auto* address = reinterpret_cast<const sockaddr*>(name.data());
-    return ::bind(socket.get(), address, static_cast<socklen_t>(name.size())) == 0 &&
-           (!listens || ::listen(socket.get(), 0) == 0);
+    const bool taken = ::bind(socket.get(), address, static_cast<socklen_t>(name.size())) == 0 &&
+                       (!listens || ::listen(socket.get(), 0) == 0);
+    return taken ? nullptr : "take the name";
   });
   {
     const MissionClaim claim(mission, "");
