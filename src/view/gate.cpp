@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "skein/error.hpp"
+#include "skein/guid.hpp"
 
 namespace skein::view {
 namespace {
@@ -49,8 +50,11 @@ std::string_view token_in(std::string_view target) {
   return token;
 }
 
-/// How long it takes tells nothing of `secret` but its size.
-bool equal_in_constant_time(std::string_view secret, std::string_view given) {
+}  // namespace
+
+std::string random_token() { return Guid::random().hex(); }
+
+bool is_secret(std::string_view secret, std::string_view given) {
   unsigned difference = secret.size() == given.size() ? 0 : 1;
   for (std::size_t i = 0; i < secret.size(); ++i) {
     const char other = i < given.size() ? given[i] : '\0';
@@ -58,8 +62,6 @@ bool equal_in_constant_time(std::string_view secret, std::string_view given) {
   }
   return difference == 0;
 }
-
-}  // namespace
 
 Gate::Gate(std::string token, std::vector<std::string> origins)
     : token_(std::move(token)), origins_(std::move(origins)) {
@@ -69,19 +71,19 @@ Gate::Gate(std::string token, std::vector<std::string> origins)
   }
 }
 
-std::optional<Refusal> Gate::refusal(const Visit& visit) const {
-  if (!equal_in_constant_time(token_, token_in(visit.target))) return Refusal{401, kHowToLook};
+std::optional<Reply> Gate::refusal(const Visit& visit) const {
+  if (!is_secret(token_, token_in(visit.target))) return Reply{401, kHowToLook};
   if (!visit.origin.empty() && !origins_.empty() &&
       std::ranges::find(origins_, visit.origin) == origins_.end()) {
-    return Refusal{403, "Pages of this origin may not look; `skein view --origin` names others.\n"};
+    return Reply{403, "Pages of this origin may not look; `skein view --origin` names others.\n"};
   }
-  if (!visit.upgrade) return Refusal{426, kHowToLook};
+  if (!visit.upgrade) return Reply{426, kHowToLook};
   const bool speaks = any_part(visit.protocols, ',', [](std::string_view protocol) {
     return trimmed(protocol) == kProtocol;
   });
   if (!speaks) {
-    return Refusal{400, "The client does not offer the protocol " + std::string(kProtocol) +
-                            ", the only one that is spoken here.\n"};
+    return Reply{400, "The client does not offer the protocol " + std::string(kProtocol) +
+                          ", the only one that is spoken here.\n"};
   }
   return std::nullopt;
 }

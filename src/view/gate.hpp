@@ -5,24 +5,18 @@
 #include <string_view>
 #include <vector>
 
+#include "view/visit.hpp"
+
 namespace skein::view {
 
 /// The protocol that clients must offer in their handshake.
 inline constexpr std::string_view kProtocol = "foxglove.websocket.v1";
 
-/// What the first HTTP request of a connection says.
-struct Visit {
-  std::string_view target;  ///< `/?token=...`
-  std::string_view origin;  ///< Of the page that asks; programs that are no browsers leave it out.
-  std::string_view protocols;  ///< WebSocket protocols that it offers, separated by commas.
-  bool upgrade = false;        ///< It asks for a WebSocket.
-};
+/// A token that nobody can guess.
+std::string random_token();
 
-/// Why a visitor may not come in: an HTTP status and a sentence for people.
-struct Refusal {
-  unsigned status;
-  std::string text;
-};
+/// Whether `given` is the secret. How long it takes tells nothing of it but its size.
+bool is_secret(std::string_view secret, std::string_view given);
 
 /// Decides who may look. Everybody needs the token: any page that a user opens can reach his
 /// loopback, and so can other users of the machine.
@@ -34,7 +28,7 @@ class Gate {
   Gate(std::string token, std::vector<std::string> origins);
 
   /// Nothing: he may come in.
-  std::optional<Refusal> refusal(const Visit& visit) const;
+  std::optional<Reply> refusal(const Visit& visit) const;
 
  private:
   const std::string token_;

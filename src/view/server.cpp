@@ -3,7 +3,6 @@
 #include <optional>
 #include <utility>
 
-#include "skein/guid.hpp"
 #include "view/client.hpp"
 #include "view/server_state.hpp"
 #include "view/web_socket.hpp"
@@ -15,8 +14,8 @@ namespace {
 constexpr std::size_t kNoLimit = SIZE_MAX;
 
 WebSocketOptions web_socket_options(const Options& options) {
-  return {options.address,     options.port,      options.max_clients,
-          options.max_message, options.handshake, options.patience};
+  return {std::string(kProtocol), options.address,   options.port,    options.max_clients,
+          options.max_message,    options.handshake, options.patience};
 }
 
 std::string text_of(std::span<const std::byte> bytes) {
@@ -25,15 +24,17 @@ std::string text_of(std::span<const std::byte> bytes) {
 
 }  // namespace
 
-std::string random_token() { return Guid::random().hex(); }
-
 struct Server::Parts {
   explicit Parts(const Options& options)
       : state(std::make_shared<ServerState>(options, callbacks)),
-        listener(std::in_place, web_socket_options(options), Gate(options.token, options.origins),
-                 [state = state](Connection& connection) {
-                   return std::make_unique<Client>(state, connection);
-                 }),
+        listener(
+            std::in_place, web_socket_options(options),
+            [gate = Gate(options.token, options.origins)](const Visit& visit) {
+              return gate.refusal(visit);
+            },
+            [state = state](Connection& connection) {
+              return std::make_unique<Client>(state, connection);
+            }),
         port(listener->port()) {}
 
   ThreadExecutor callbacks{"skein-view-call", 1, kNoLimit};

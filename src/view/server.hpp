@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "view/connection_graph.hpp"
+#include "view/gate.hpp"
 
 /// Shows a mission to Lichtblick, Foxglove and whoever else speaks foxglove.websocket.v1.
 namespace skein::view {
@@ -35,9 +36,6 @@ struct Options {
   /// So is a client of which nothing is heard, and that takes nothing, for so long.
   std::chrono::milliseconds patience{30'000};
 };
-
-/// A token that nobody can guess.
-std::string random_token();
 
 /// A topic, whose samples are CDR.
 struct Channel {

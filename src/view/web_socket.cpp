@@ -64,7 +64,7 @@ class BeastConnection;
 /// What the connections share. Only the listener's thread uses it.
 struct House {
   WebSocketOptions options;
-  Gate gate;
+  WebSocketListener::Judge judge;
   WebSocketListener::Open open;
   std::list<BeastConnection*> newcomers;  // in the order in which they came
   std::size_t clients = 0;
@@ -130,24 +130,25 @@ class BeastConnection final : public Connection,
 
   void judge() {
     const auto& request = parser_.get();
-    auto refusal = house_->gate.refusal(
-        {view_of(request.target()), view_of(request[http::field::origin]),
+    auto reply = house_->judge(
+        {view_of(request.method_string()), view_of(request.target()),
+         view_of(request[http::field::host]), view_of(request[http::field::origin]),
          view_of(request[http::field::sec_websocket_protocol]), websocket::is_upgrade(request)});
-    if (!refusal && house_->clients >= house_->options.max_clients) {
-      refusal = Refusal{503, "There are " + std::to_string(house_->clients) +
-                                 " clients, and no more are taken.\n"};
+    if (!reply && house_->clients >= house_->options.max_clients) {
+      reply = Reply{503, "There are " + std::to_string(house_->clients) +
+                             " clients, and no more are taken.\n"};
     }
-    if (refusal) return refuse(*refusal);
+    if (reply) return send(std::move(*reply));
     admitted_ = true;
     ++house_->clients;
     std::erase(house_->newcomers, this);
     accept();
   }
 
-  void refuse(const Refusal& refusal) {
+  void send(Reply reply) {
     const auto response = std::make_shared<http::response<http::string_body>>(
-        http::int_to_status(refusal.status), parser_.get().version(), refusal.text);
-    response->set(http::field::content_type, "text/plain; charset=utf-8");
+        http::int_to_status(reply.status), parser_.get().version(), std::move(reply.text));
+    for (const auto& [name, value] : reply.headers) response->set(name, value);
     response->keep_alive(false);
     response->prepare_payload();
     http::async_write(
@@ -161,10 +162,12 @@ class BeastConnection final : public Connection,
     stream_.set_option(websocket::stream_base::timeout{house_->options.handshake,
                                                        websocket::stream_base::none(), false});
     stream_.control_callback([this](websocket::frame_type, beast::string_view) { heard_ = true; });
-    stream_.set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
-      response.set(http::field::sec_websocket_protocol,
-                   beast::string_view(kProtocol.data(), kProtocol.size()));
-    }));
+    if (const std::string& protocol = house_->options.protocol; !protocol.empty()) {
+      stream_.set_option(
+          websocket::stream_base::decorator([protocol](websocket::response_type& response) {
+            response.set(http::field::sec_websocket_protocol, protocol);
+          }));
+    }
     stream_.auto_fragment(false);
     stream_.read_message_max(house_->options.max_message);
     stream_.async_accept(parser_.get(), [self = shared_from_this()](error_code error) {
@@ -300,8 +303,8 @@ tcp::acceptor listen(asio::io_context& context, const WebSocketOptions& options)
 }  // namespace
 
 struct WebSocketListener::State {
-  State(const WebSocketOptions& options, Gate gate, Open open)
-      : house(std::make_shared<House>(House{options, std::move(gate), std::move(open), {}})),
+  State(const WebSocketOptions& options, Judge judge, Open open)
+      : house(std::make_shared<House>(House{options, std::move(judge), std::move(open), {}})),
         acceptor(listen(context, options)),
         port(acceptor.local_endpoint().port()) {}
 
@@ -345,8 +348,8 @@ struct WebSocketListener::State {
   std::thread thread;
 };
 
-WebSocketListener::WebSocketListener(const WebSocketOptions& options, Gate gate, Open open)
-    : state_(std::make_unique<State>(options, std::move(gate), std::move(open))) {
+WebSocketListener::WebSocketListener(const WebSocketOptions& options, Judge judge, Open open)
+    : state_(std::make_unique<State>(options, std::move(judge), std::move(open))) {
   state_->accept();
   state_->thread = start_thread("skein-view", [state = state_.get()] { state->run(); });
 }

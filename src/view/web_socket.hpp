@@ -9,8 +9,8 @@
 #include <string>
 #include <string_view>
 
-#include "view/gate.hpp"
 #include "view/socket_frame.hpp"
+#include "view/visit.hpp"
 
 /// WebSockets, without the library that makes them.
 namespace skein::view {
@@ -41,6 +41,7 @@ class Connection {
 };
 
 struct WebSocketOptions {
+  std::string protocol;  ///< That is spoken; empty: one that has no name.
   std::string address;
   std::uint16_t port = 0;       ///< 0: any that is free.
   std::size_t max_clients = 0;  ///< More are refused.
@@ -52,14 +53,16 @@ struct WebSocketOptions {
   std::chrono::milliseconds patience{};
 };
 
-/// Takes connections, those that the gate lets in, on a thread of its own (`skein-view`).
+/// Takes connections on a thread of its own (`skein-view`).
 class WebSocketListener {
  public:
+  /// What a visitor gets; nothing: a WebSocket, for which he must have asked.
+  using Judge = std::function<std::optional<Reply>(const Visit&)>;
   using Open = std::function<std::unique_ptr<Session>(Connection&)>;
 
-  /// `open` is called on its thread. Throws InvalidArgument for an address that is none,
-  /// Unavailable where the port cannot be had.
-  WebSocketListener(const WebSocketOptions& options, Gate gate, Open open);
+  /// `judge` and `open` are called on its thread. Throws InvalidArgument for an address that is
+  /// none, Unavailable where the port cannot be had.
+  WebSocketListener(const WebSocketOptions& options, Judge judge, Open open);
   /// Ends all connections. When it returns, there are no sessions. Not from its thread.
   ~WebSocketListener();
 

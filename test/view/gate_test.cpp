@@ -11,7 +11,7 @@ namespace {
 
 const std::string kToken = "0123456789abcdef";
 
-Visit visit() { return {"/?token=0123456789abcdef", "", "foxglove.websocket.v1", true}; }
+Visit visit() { return {"GET", "/?token=0123456789abcdef", "", "", "foxglove.websocket.v1", true}; }
 
 unsigned verdict(const Visit& visit, const std::vector<std::string>& origins = {}) {
   const auto refusal = Gate(kToken, origins).refusal(visit);

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace skein::view {
+
+/// What the first HTTP request of a connection says. It has no body.
+struct Visit {
+  std::string_view method;
+  std::string_view target;  ///< `/?token=...`
+  std::string_view host;    ///< As the client names the server.
+  std::string_view origin;  ///< Of the page that asks; programs that are no browsers leave it out.
+  std::string_view protocols;  ///< WebSocket protocols that it offers, separated by commas.
+  bool upgrade = false;        ///< It asks for a WebSocket.
+};
+
+/// What a visitor gets in place of a WebSocket: a file, or why he may not come in.
+struct Reply {
+  unsigned status;   ///< Of HTTP.
+  std::string text;  ///< For people, if nothing else.
+  std::vector<std::pair<std::string, std::string>> headers{
+      {"Content-Type", "text/plain; charset=utf-8"}};
+};
+
+}  // namespace skein::view
