@@ -164,6 +164,17 @@ std::string flown_instead() {
   return list.empty() ? "" : "; missions of this user fly here on domain " + list;
 }
 
+/// One for each launcher of this user.
+std::vector<Question> all_launchers() {
+  std::vector<Question> questions;
+  OwnHolders holders;
+  for (const auto& [name, link] : bound_sockets()) {
+    if (!name.starts_with(own_prefix())) continue;
+    if (const auto holder = holders.of(name)) questions.push_back({name, *holder});
+  }
+  return questions;
+}
+
 /// Throws as ask_launcher().
 std::string checked_answer(const Question& asked) {
   const std::string& answer = asked.answer;
@@ -194,13 +205,19 @@ std::string ask_launcher(const profile::MissionProfile& mission, const std::stri
   return checked_answer(questions.front());
 }
 
-std::vector<LauncherAnswer> ask_launchers(const std::string& request) {
-  std::vector<Question> questions;
-  OwnHolders holders;
-  for (const auto& [name, link] : bound_sockets()) {
-    if (!name.starts_with(own_prefix())) continue;
-    if (const auto holder = holders.of(name)) questions.push_back({name, *holder});
+std::string ask_launcher(pid_t launcher, const std::string& request) {
+  std::vector<Question> questions = all_launchers();
+  std::erase_if(questions, [&](const Question& each) { return each.launcher != launcher; });
+  if (questions.empty()) {
+    throw Unavailable("process " + std::to_string(launcher) +
+                      " is no launcher of this user any more");
   }
+  ask(questions, request);
+  return checked_answer(questions.front());
+}
+
+std::vector<LauncherAnswer> ask_launchers(const std::string& request) {
+  std::vector<Question> questions = all_launchers();
   ask(questions, request);
   std::vector<LauncherAnswer> answers;
   for (const Question& asked : questions) {

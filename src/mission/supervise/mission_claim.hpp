@@ -1,5 +1,7 @@
 #pragma once
 
+#include <sys/types.h>
+
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -20,6 +22,9 @@ inline constexpr std::string_view kRefused = "no ";
 /// some seconds, and with its reason where it refuses.
 std::string ask_launcher(const profile::MissionProfile& mission, const std::string& host,
                          const std::string& request);
+
+/// The same, of the launcher that is this process: see MissionStatus::launcher.
+std::string ask_launcher(pid_t launcher, const std::string& request);
 
 struct LauncherAnswer {
   std::string text;

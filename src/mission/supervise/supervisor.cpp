@@ -248,23 +248,50 @@ class MissionRun {
   }
 
   std::string answer(std::string_view request) {
-    constexpr std::string_view kRestart = "restart ";
+    const std::string_view verb = request.substr(0, request.find(' '));
+    const std::string_view rest = request.substr(std::min(verb.size() + 1, request.size()));
     if (request == "status") return accepted(status());
-    if (request.starts_with(kRestart)) return restart(request.substr(kRestart.size()));
+    if (request == "stop") {
+      stop_.raise();
+      return accepted("the mission is being ended");
+    }
+    if (verb == "restart") return with_process(rest, [&](std::size_t i) { return restart(i); });
+    if (verb == "kill") return with_process(rest, [&](std::size_t i) { return kill(i); });
+    if (verb == "hang") return with_process(rest, [&](std::size_t i) { return hang(i); });
     return refused("it does not know this request; is it of another version?");
   }
 
-  std::string restart(std::string_view asked) {
+  std::string restart(std::size_t i) {
+    const std::string& name = children_[i].plan().name;
+    if (child_of(i).state() == ChildState::Idle) return refused(name + " was not started yet");
+    report("is asked to start " + name + " anew");
+    apply(state_.restart(i, now()));
+    return accepted(name + " is started anew");
+  }
+
+  std::string kill(std::size_t i) { return fault(i, SIGKILL, "is killed"); }
+
+  std::string hang(std::size_t i) {
+    return fault(i, SIGSTOP, "hangs from now on; restart it to go on");
+  }
+
+  /// What a mission must bear, on demand.
+  std::string fault(std::size_t i, int signal, const std::string& effect) {
+    const std::string& name = children_[i].plan().name;
+    const ChildProcess* process = children_[i].process();
+    if (!process) return refused(name + " does not run");
+    report(name + " " + effect + ", as somebody asks");
+    process->send(signal);
+    return accepted(name + " " + effect);
+  }
+
+  /// What `act` answers for the process of that name, or why there is none.
+  template <class Act>
+  std::string with_process(std::string_view asked, const Act& act) const {
     std::vector<std::string> names;
     for (const SupervisedChild& child : children_) names.push_back(child.plan().name);
-    if (const auto i = process_named(asked, names)) {
-      const std::string& name = names[*i];
-      if (state_.verdict()) return refused("the mission is being ended");
-      if (child_of(*i).state() == ChildState::Idle) return refused(name + " was not started yet");
-      report("is asked to start " + name + " anew");
-      apply(state_.restart(*i, now()));
-      return accepted(name + " is started anew");
-    }
+    if (const auto i = process_named(asked, names))
+      return state_.verdict() ? refused("the mission is being ended") : act(*i);
     const std::string unknown = printable(asked);
     std::string list;
     for (const std::string& each : names) list += (list.empty() ? "" : ", ") + each;

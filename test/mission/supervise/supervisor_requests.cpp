@@ -9,7 +9,9 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <fstream>
 #include <future>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -51,6 +53,7 @@ class RunningMission {
   bool becomes(std::size_t process, const std::string& state) const {
     return test::eventually([&] { return status(process).state == state; });
   }
+  LaunchResult result() { return result_.get(); }
   const profile::MissionProfile& mission() const { return mission_; }
   int listener() const { return claim_->requests(); }
 
@@ -101,6 +104,12 @@ class Stranger {
   FileDescriptor end_;
 };
 
+bool is_stopped(pid_t process) {
+  std::ifstream file("/proc/" + std::to_string(process) + "/stat");
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  return text.find(") T ") != std::string::npos;
+}
+
 ChildPlan failing_child() {
   auto child = shell_child("a", "exit 3");
   child.rules.on_loss = profile::LossPolicy::Degrade;
@@ -150,6 +159,30 @@ TEST_CASE("A running process is replaced on request, whatever its rules of resta
     return now.state == "ready" && now.pid != before;
   }));
   CHECK_THAT(mission.status(0).last_exit, Contains("by signal"));
+}
+
+TEST_CASE("A launcher of whom only the process is known is asked, and ends its mission on request") {
+  RunningMission mission({shell_child("a", kWait)});
+  REQUIRE(mission.becomes(0, "ready"));
+  CHECK(ask_launcher(::getpid(), "stop") == "the mission is being ended");
+  CHECK(mission.result().reason == "it was asked to stop");
+  CHECK_THROWS_WITH(ask_launcher(1, "stop"), Contains("process 1 is no launcher of this user"));
+}
+
+TEST_CASE("What a mission must bear is done to its processes on request") {
+  auto child = shell_child("a", kWait);
+  child.rules.restart.policy = profile::RestartPolicy::OnFailure;
+  RunningMission mission({child});
+  REQUIRE(mission.becomes(0, "ready"));
+  const auto before = mission.status(0).pid;
+  CHECK(mission.ask("hang a") == "a hangs from now on; restart it to go on");
+  CHECK(test::eventually([&] { return is_stopped(static_cast<pid_t>(before)); }));
+  CHECK(mission.ask("kill a") == "a is killed");
+  CHECK(test::eventually([&] {
+    const auto now = mission.status(0);
+    return now.state == "ready" && now.pid != before;
+  }));
+  CHECK(mission.status(0).last_exit == "by signal 9 (Killed)");
 }
 
 TEST_CASE("What a launcher cannot do it refuses with the reason") {
