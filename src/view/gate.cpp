@@ -54,6 +54,12 @@ std::string_view token_in(std::string_view target) {
 
 std::string random_token() { return Guid::random().hex(); }
 
+void demand_token(std::string_view token) {
+  if (token.size() >= kShortestToken && std::ranges::all_of(token, goes_into_urls)) return;
+  throw InvalidArgument("a token has at least " + std::to_string(kShortestToken) +
+                        " letters, digits, '-' or '_', and no other characters");
+}
+
 bool is_secret(std::string_view secret, std::string_view given) {
   unsigned difference = secret.size() == given.size() ? 0 : 1;
   for (std::size_t i = 0; i < secret.size(); ++i) {
@@ -65,10 +71,7 @@ bool is_secret(std::string_view secret, std::string_view given) {
 
 Gate::Gate(std::string token, std::vector<std::string> origins)
     : token_(std::move(token)), origins_(std::move(origins)) {
-  if (token_.size() < kShortestToken || !std::ranges::all_of(token_, goes_into_urls)) {
-    throw InvalidArgument("a token has at least " + std::to_string(kShortestToken) +
-                          " letters, digits, '-' or '_', and no other characters");
-  }
+  demand_token(token_);
 }
 
 std::optional<Reply> Gate::refusal(const Visit& visit) const {

@@ -15,6 +15,9 @@ inline constexpr std::string_view kProtocol = "foxglove.websocket.v1";
 /// A token that nobody can guess.
 std::string random_token();
 
+/// Throws InvalidArgument unless it has at least 16 of the characters that a URL takes as they are.
+void demand_token(std::string_view token);
+
 /// Whether `given` is the secret. How long it takes tells nothing of it but its size.
 bool is_secret(std::string_view secret, std::string_view given);
 
@@ -22,9 +25,8 @@ bool is_secret(std::string_view secret, std::string_view given);
 /// loopback, and so can other users of the machine.
 class Gate {
  public:
-  /// `token`: at least 16 of the characters that a URL takes as they are. `origins`: pages that may
-  /// look, by scheme, host and port (`http://localhost:8080`); all where it is empty. Throws
-  /// InvalidArgument for another token.
+  /// `origins`: pages that may look, by scheme, host and port (`http://localhost:8080`); all where
+  /// it is empty. Throws as demand_token().
   Gate(std::string token, std::vector<std::string> origins);
 
   /// Nothing: he may come in.

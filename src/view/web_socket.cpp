@@ -39,7 +39,7 @@ using boost::system::error_code;
 
 constexpr const char* kPlace = "view";
 /// Connections that are not clients yet.
-constexpr std::size_t kNewcomers = 32;
+constexpr std::size_t kNewcomers = 128;
 /// What of a message waits in the kernel: more would become old there, where a newer one cannot
 /// take its place.
 constexpr int kUnsentBytes = 64 << 10;
