@@ -87,13 +87,15 @@ void add_decisions(CLI::App& app, int& result) {
 void add_graph(CLI::App& app, int& result) {
   auto& command = add_command(
       app, "graph", "Draw who speaks to whom on a domain now",
-      {{"skein graph --domain 47 | dot -Tsvg > mission.svg", "A picture, by Graphviz"},
+      {{"skein graph --domain 47 --format svg > mission.svg", "A picture, by Graphviz"},
        {"skein graph --domain 47 --format mermaid", "Text for a README or an issue"},
        {"skein graph --profile mission.xml --format json", "Nodes and edges, for programs"}});
   auto& arguments = arguments_of(command, draw_graph, result);
   add_onlooker(command, arguments);
-  const std::vector<std::string> formats{"dot", "mermaid", "json"};
-  auto* format = command.add_option("--format", arguments.format, "The notation")
+  const std::vector<std::string> formats{"dot", "mermaid", "json", "svg", "png"};
+  auto* format = command
+                     .add_option("--format", arguments.format,
+                                 "The notation; svg and png need the package graphviz")
                      ->type_name(one_of(formats))
                      ->check(known_word(formats))
                      ->capture_default_str();

@@ -12,7 +12,9 @@
 #include "command/print/interruption.hpp"
 #include "command/print/json_output.hpp"
 #include "core/printable.hpp"
+#include "core/system/whole_file.hpp"
 #include "entity/statistics_topic.hpp"
+#include "graphviz.hpp"
 #include "skein/discovery.idl.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
@@ -182,6 +184,12 @@ std::string mermaid_text(std::string text) {
   return "\"" + replaced(std::move(text), "\n", "<br>") + "\"";
 }
 
+std::string picture_of(const Graph& graph, const std::string& format) try {
+  return run_dot(format, to_dot(graph));
+} catch (const Unavailable& error) {  // not of the domain
+  throw WriteFailed(error.what());
+}
+
 }  // namespace
 
 Graph graph_of(const DomainPicture& picture, const Traffic& traffic) {
@@ -264,7 +272,10 @@ int draw_graph(const GraphArguments& arguments) {
   if (format == "json") {
     print_json(to_json(graph), true);
   } else {
-    std::fputs((format == "dot" ? to_dot(graph) : to_mermaid(graph)).c_str(), stdout);
+    const std::string text = format == "mermaid" ? to_mermaid(graph)
+                             : format == "dot"   ? to_dot(graph)
+                                                 : picture_of(graph, format);
+    std::fwrite(text.data(), 1, text.size(), stdout);
   }
   return 0;
 }
