@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "command/look/domain_picture.hpp"
+#include "command/top/sampler.hpp"
+#include "designer_state.idl.hpp"
+#include "plan.hpp"
+#include "skein/introspection.idl.hpp"
+#include "skein/mission_status.idl.hpp"
+
+namespace skein::command::designer {
+
+/// What was seen of a domain at one moment.
+struct Sight {
+  std::uint64_t time = 0;  ///< Nanoseconds by a clock that is never set.
+  DomainPicture picture;   ///< Whole.
+  std::vector<introspection::ServiceStatistics> statistics;
+  std::vector<launch::MissionStatus> missions;
+  std::vector<introspection::Decision> decisions;  ///< The latest of each Head and service.
+};
+
+/// Makes the entities and links of a state from one sight after the other: rates come of two, and
+/// who has gone is remembered for a while. Knows no network. Not thread-safe.
+class StateMaker {
+ public:
+  /// For how long an entity is shown that nobody expects, after it has gone, in nanoseconds.
+  static constexpr std::uint64_t kRemembered = 60'000'000'000;
+
+  explicit StateMaker(std::optional<Plan> plan = {}) : plan_(std::move(plan)) {}
+
+  /// Entities by name, without their places, and links.
+  DomainState make(const Sight& sight);
+
+ private:
+  struct Known {
+    EntityState state;
+    std::uint64_t seen = 0;
+    int silent_looks = 0;
+  };
+
+  void remember(std::uint64_t now, std::map<std::string, EntityState>& entities);
+
+  const std::optional<Plan> plan_;
+  top::Rates rates_;
+  std::map<std::string, Known> known_;                  // by the entity's name
+  std::map<std::string, std::uint64_t> counts_before_;  // of what links carry
+  std::uint64_t time_before_ = 0;                       // of the last sight; 0: there was none
+};
+
+/// What the page shows of a decision, and of a line of a log.
+DecisionNote note_of(const introspection::Decision& decision);
+LogNote note_of(const introspection::LogLine& line);
+
+}  // namespace skein::command::designer
