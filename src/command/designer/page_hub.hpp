@@ -1,0 +1,69 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+
+#include "skein/executor.hpp"
+#include "view/web_socket.hpp"
+
+namespace skein::command::designer {
+
+/// What is sent to the clients of the page: to each the newest state, as fast as it takes it, and
+/// the answers to its requests. Thread-safe; no function waits for a client.
+class PageHub : public std::enable_shared_from_this<PageHub> {
+ public:
+  /// Carries out a request and returns the answer; what it throws is the answer, too. Called on a
+  /// thread of the hub, one request after the other.
+  using Obey = std::function<std::string(std::string_view request)>;
+
+  /// A client that has so many requests without an answer has to wait.
+  static constexpr std::size_t kRequests = 32;
+
+  explicit PageHub(Obey obey) : obey_(std::move(obey)) {}
+  ~PageHub();
+
+  /// Null: there is none any more.
+  void publish(std::shared_ptr<const std::string> state);
+
+  /// The newest state; somebody wants to see it.
+  std::shared_ptr<const std::string> look();
+  /// Whether there is a client, or somebody has looked some seconds ago.
+  bool is_watched() const;
+
+  /// A new client.
+  std::unique_ptr<view::Session> open(view::Connection& connection);
+
+  /// No request is carried out any more when it returns.
+  void close();
+
+ private:
+  class Client;
+  struct Place {
+    view::Connection* connection;
+    std::uint64_t seen = 0;  // which state it was sent
+    std::size_t requests = 0;
+    std::vector<std::string> answers{};
+  };
+
+  void take(std::uint64_t client, std::string request);
+  void answer(std::uint64_t client, std::string text);
+  std::optional<view::Frame> next(std::uint64_t client);
+  void leave(std::uint64_t client);
+
+  const Obey obey_;
+  mutable std::mutex mutex_;  // of what follows, but the executor
+  std::map<std::uint64_t, Place> clients_;
+  std::uint64_t last_client_ = 0;
+  std::shared_ptr<const std::string> state_;
+  std::uint64_t number_ = 0;  // of the state
+  std::chrono::steady_clock::time_point looked_{};
+  ThreadExecutor requests_{"skein-view-call", 1, SIZE_MAX};  // bounded by kRequests
+};
+
+}  // namespace skein::command::designer

@@ -1,0 +1,81 @@
+#include "requests.hpp"
+
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/printable.hpp"
+#include "skein/error.hpp"
+
+namespace skein::command::designer {
+namespace {
+
+using Json = nlohmann::json;
+
+/// Farther away nobody finds a box again.
+constexpr double kFarthest = 1e6;
+
+const Json& member(const Json& request, const char* name) {
+  const auto found = request.find(name);
+  if (found == request.end())
+    throw InvalidArgument(std::string("the request has no member '") + name + "'");
+  return *found;
+}
+
+std::string text_of(const Json& request, const char* name) {
+  const Json& value = member(request, name);
+  if (value.is_string()) return value.get<std::string>();
+  throw InvalidArgument(std::string("the member '") + name + "' is no text");
+}
+
+double number_of(const Json& request, const char* name, double most) {
+  const Json& value = member(request, name);
+  if (value.is_number() && std::abs(value.get<double>()) <= most) return value.get<double>();
+  throw InvalidArgument(std::string("the member '") + name + "' is no number, or too great");
+}
+
+/// It is one line to the launcher.
+std::string process_of(const Json& request) {
+  const std::string process = text_of(request, "process");
+  if (process.find('\n') == std::string::npos) return process;
+  throw InvalidArgument("no process has such a name");
+}
+
+std::string ask_about(const Json& request, const std::string& what, const Powers& powers) {
+  constexpr double kMostProcesses = 1 << 22;
+  return powers.ask_launcher(static_cast<int>(number_of(request, "launcher", kMostProcesses)),
+                             what);
+}
+
+std::string do_fault(const Json& request, const std::string& fault, const Powers& powers) {
+  if (!powers.faults) {
+    throw InvalidArgument(
+        "only with --faults are processes killed and made to hang: it is for "
+        "missions in which nothing real can break");
+  }
+  return ask_about(request, fault + " " + process_of(request), powers);
+}
+
+}  // namespace
+
+std::string obey(std::string_view text, const Powers& powers) {
+  const Json request = Json::parse(text, nullptr, false);
+  if (!request.is_object()) throw InvalidArgument("a request is a JSON object");
+  const std::string what = text_of(request, "do");
+  if (what == "stop") return ask_about(request, what, powers);
+  if (what == "restart") return ask_about(request, what + " " + process_of(request), powers);
+  if (what == "kill" || what == "hang") return do_fault(request, what, powers);
+  if (what == "move") {
+    powers.move(text_of(request, "entity"),
+                {number_of(request, "x", kFarthest), number_of(request, "y", kFarthest)});
+    return "moved";
+  }
+  if (what == "arrange") {
+    powers.arrange();
+    return "arranged";
+  }
+  throw InvalidArgument("'" + printable(what) +
+                        "' can not be asked for; restart, stop, kill, hang, move and arrange can");
+}
+
+}  // namespace skein::command::designer

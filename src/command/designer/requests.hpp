@@ -1,0 +1,25 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "layout.hpp"
+
+namespace skein::command::designer {
+
+/// What the page can ask for.
+struct Powers {
+  std::function<std::string(int launcher, const std::string& request)> ask_launcher;
+  std::function<void(const std::string& entity, Place to)> move;
+  std::function<void()> arrange;
+  bool faults = false;  ///< Whether processes may be killed and made to hang.
+};
+
+/// Carries out a request, a JSON object: `{"request": 7, "do": "restart", "launcher": 4711,
+/// "process": "navigator"}`, `stop` with a launcher, `kill` and `hang` as `restart`, `move` with
+/// `entity`, `x` and `y`, and `arrange`. Returns what was done, in words. Throws InvalidArgument
+/// for a request that is none, and what `powers` throw.
+std::string obey(std::string_view request, const Powers& powers);
+
+}  // namespace skein::command::designer

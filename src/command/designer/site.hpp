@@ -1,0 +1,53 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "view/visit.hpp"
+
+namespace skein::command::designer {
+
+/// A file of the page, which the program contains.
+struct PageFile {
+  std::string_view name;
+  std::string_view type;
+  std::string_view text;
+};
+
+/// Null: there is none.
+const PageFile* find_page_file(std::string_view name);
+
+/// What is at which address: all under `/TOKEN/`, so that a page that loads its parts by relative
+/// addresses needs neither cookies nor another way to prove itself. Any page that a user opens can
+/// reach his loopback, and so can other users of the machine; a name server can give a stranger's
+/// name this address. So the token, the name of the host and the origin must be right. Thread-safe.
+class Site {
+ public:
+  /// The state as JSON; null: there is none yet.
+  using State = std::function<std::shared_ptr<const std::string>()>;
+
+  /// Throws InvalidArgument for a token as view::Gate does.
+  Site(std::string token, State state);
+
+  /// After it the site knows its own name; before it turns everybody away.
+  void listens_at(std::uint16_t port) { port_ = port; }
+  std::string url() const;
+
+  /// What a visitor gets; nothing: a WebSocket.
+  std::optional<view::Reply> reply(const view::Visit& visit) const;
+
+ private:
+  bool is_own_name(std::string_view host) const;
+  view::Reply file(std::string_view name) const;
+
+  const std::string token_;
+  const State state_;
+  std::atomic<std::uint16_t> port_{0};
+};
+
+}  // namespace skein::command::designer
