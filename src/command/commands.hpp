@@ -291,6 +291,17 @@ struct ViewArguments : Onlooker {
 /// `skein view`: shows a domain to Lichtblick and Foxglove, until interrupted.
 int serve_view(const ViewArguments& arguments);
 
+struct DesignerArguments : Onlooker {
+  bool watch = false;
+  std::uint16_t port = 8080;
+  std::string token;  ///< Empty: a random one.
+  bool faults = false;
+  bool no_browser = false;
+};
+
+/// `skein designer`: a page that shows a domain while missions fly there, until interrupted.
+int serve_designer(const DesignerArguments& arguments);
+
 struct RecordArguments : Onlooker {
   std::string output;  ///< Empty: a name with the time.
   std::vector<std::string> topics;

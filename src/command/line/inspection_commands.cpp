@@ -184,11 +184,45 @@ void add_view(CLI::App& app, int& result) {
   add_exit_codes(command);
 }
 
+void add_designer(CLI::App& app, int& result) {
+  auto& command = add_command(
+      app, "designer",
+      "Show a mission on a page, live: entities, CSPs, calls, values, decisions and logs\n\n"
+      "Entities are boxes with their CSPs; lines between them are calls and topics, with rates, "
+      "latencies and transports. With a profile, what it has and nobody has seen is dashed. "
+      "Processes of missions that this user flies here can be restarted, and missions be stopped. "
+      "What the page shows is at state.json beside it, for programs. Boxes are placed by Graphviz "
+      "(package graphviz).",
+      {{"skein designer --watch --domain 47", "A mission that somebody has started"},
+       {"skein designer --watch --profile mission.xml", "The same, over what the profile expects"},
+       {"skein designer --watch --profile mission.xml --faults",
+        "A simulated mission, whose processes may be killed"}});
+  auto& arguments = arguments_of(command, serve_designer, result);
+  command.add_flag("--watch", arguments.watch, "Watch a mission that somebody starts")->required();
+  add_onlooker(command, arguments);
+  command.add_option("--port", arguments.port, "TCP port on loopback; 0 takes any that is free")
+      ->type_name("PORT")
+      ->capture_default_str();
+  command
+      .add_option("--token", arguments.token,
+                  "What the URL must contain, which others can see on the command line, but not in "
+                  "the environment; default: a random one")
+      ->type_name("TOKEN")
+      ->envname("SKEIN_DESIGNER_TOKEN");
+  command.add_flag("--faults", arguments.faults,
+                   "Let those who look kill processes and make them hang, to see what the mission "
+                   "bears: for missions in which nothing real can break");
+  command.add_flag("--no-browser", arguments.no_browser,
+                   "Open no browser; default: the desktop's, if there is one");
+  add_exit_codes(command);
+}
+
 }  // namespace
 
 void add_inspection_commands(CLI::App& app, int& result) {
   add_calls(app, result);
   add_decisions(app, result);
+  add_designer(app, result);
   add_graph(app, result);
   add_log(app, result);
   add_peers(app, result);

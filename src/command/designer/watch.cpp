@@ -1,0 +1,133 @@
+#include "watch.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "brokerless_discovery/broker.hpp"
+#include "core/threads/start_thread.hpp"
+#include "core/wall_clock.hpp"
+#include "mission/supervise/mission_claim.hpp"
+#include "skein/detail/type_support.hpp"
+#include "skein/entity.hpp"
+#include "skein/error.hpp"
+
+namespace skein::command::designer {
+
+using namespace std::chrono;
+
+LauncherWatch::LauncherWatch(std::uint32_t domain)
+    : domain_(domain), thread_(start_thread("skein-launchers", [this] { run(); })) {}
+
+LauncherWatch::~LauncherWatch() {
+  {
+    std::lock_guard lock(mutex_);
+    ended_ = true;
+  }
+  ends_.notify_all();
+  thread_.join();
+}
+
+std::vector<launch::MissionStatus> LauncherWatch::missions() const {
+  std::lock_guard lock(mutex_);
+  return missions_;
+}
+
+std::vector<std::string> LauncherWatch::troubles() const {
+  std::lock_guard lock(mutex_);
+  return troubles_;
+}
+
+void LauncherWatch::run() {
+  std::unique_lock lock(mutex_);
+  while (!ended_) {
+    lock.unlock();
+    std::vector<launch::MissionStatus> missions;
+    std::vector<std::string> troubles;
+    for (const launch::LauncherAnswer& answer : launch::ask_launchers("status")) {
+      if (!answer.failure.empty()) {
+        troubles.push_back(answer.failure);
+        continue;
+      }
+      try {
+        auto status = idl::from_json<launch::MissionStatus>(answer.text);
+        if (status.domain == domain_) missions.push_back(std::move(status));
+      } catch (const Error& error) {
+        troubles.push_back(std::string("a launcher's answer is not understood: ") + error.what());
+      }
+    }
+    lock.lock();
+    missions_ = std::move(missions);
+    troubles_ = std::move(troubles);
+    ends_.wait_for(lock, 1s, [this] { return ended_; });
+  }
+}
+
+void Chronicle::add(const introspection::Decision& decision) {
+  std::lock_guard lock(mutex_);
+  const std::pair key(decision.entity, decision.service);
+  if (decisions_.size() >= kHeads && !decisions_.contains(key)) return;
+  auto& latest = decisions_[key];
+  latest.push_back(decision);
+  if (latest.size() > kDecisions) latest.pop_front();
+}
+
+/// All entities of a process tell its lines, each with the same number.
+void Chronicle::add(const introspection::LogLine& line) {
+  std::lock_guard lock(mutex_);
+  if (!known_lines_.emplace(line.host, line.pid, line.number).second) return;
+  lines_.push_back(line);
+  if (lines_.size() <= kLines) return;
+  const auto& oldest = lines_.front();
+  known_lines_.erase({oldest.host, oldest.pid, oldest.number});
+  lines_.pop_front();
+}
+
+std::vector<introspection::Decision> Chronicle::latest_decisions() const {
+  std::lock_guard lock(mutex_);
+  std::vector<introspection::Decision> latest;
+  for (const auto& [head, decisions] : decisions_) latest.push_back(decisions.back());
+  return latest;
+}
+
+void Chronicle::tell(DomainState& state) const {
+  std::lock_guard lock(mutex_);
+  for (const auto& [head, decisions] : decisions_) {
+    for (const auto& decision : decisions) state.decisions.push_back(note_of(decision));
+  }
+  for (const auto& line : lines_) state.log.push_back(note_of(line));
+  std::ranges::stable_sort(state.decisions, {}, &DecisionNote::time);
+  std::ranges::stable_sort(state.log, {}, &LogNote::time);
+}
+
+DomainWatch::DomainWatch(Entity& entity, std::uint32_t domain, std::optional<Plan> plan,
+                         std::function<bool()> gives_up)
+    : entity_(entity),
+      maker_(std::move(plan)),
+      look_(entity, std::move(gives_up)),
+      launchers_(domain),
+      statistics_(entity.participant()),
+      decisions_(entity.participant(), introspection::kDecisions,
+                 [this](const introspection::Decision& each) { chronicle_.add(each); }),
+      log_(entity.participant(), introspection::kLog,
+           [this](const introspection::LogLine& each) { chronicle_.add(each); }) {}
+
+DomainState DomainWatch::look() {
+  Sight sight;
+  sight.picture = look_.take(true);
+  std::erase_if(sight.picture, is_tool);
+  sight.time = static_cast<std::uint64_t>(
+      duration_cast<nanoseconds>(steady_clock::now().time_since_epoch()).count());
+  sight.statistics = statistics_.latest();
+  sight.missions = launchers_.missions();
+  sight.decisions = chronicle_.latest_decisions();
+  DomainState state = maker_.make(sight);
+  state.domain = launchers_.domain();
+  state.place = entity_.broker().options().place;
+  state.time = nanoseconds_since_1970();
+  for (const std::string& trouble : launchers_.troubles()) state.troubles.push_back(trouble);
+  for (auto& mission : sight.missions) state.missions.push_back(std::move(mission));
+  chronicle_.tell(state);
+  return state;
+}
+
+}  // namespace skein::command::designer

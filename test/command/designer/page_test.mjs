@@ -1,0 +1,311 @@
+// The page of `skein designer` in Chromium, over the reconnaissance mission: page_test.mjs SKEIN SOURCES.
+import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
+import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import http from "node:http";
+import { createRequire } from "node:module";
+import net from "node:net";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { chromium } from "playwright-core";
+import WebSocket from "ws";
+
+const [skein, sources] = process.argv.slice(-2);
+const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core"), "utf8");
+const token = "0123456789abcdef0123";
+const patience = 60_000; // that only a broken program exhausts
+const mission = `${sources}/mission_profiles/reconnaissance/reconnaissance.xml`;
+const choice = ["--variable", "domain=31", "--variable", "speed_limit=8"];
+const navigator = "uav-1/navigator";
+
+/** Where missions leave what they write. */
+const folder = mkdtempSync(join(tmpdir(), "skein-page-"));
+/** Processes that end with the test. @type {Set<import("node:child_process").ChildProcess>} */
+const running = new Set();
+let browser, page, designer, port;
+/** What went wrong in the page. @type {string[]} */
+const complaints = [];
+
+function run(...words) {
+  const child = spawn(skein, words, { env: { ...process.env, SKEIN_DESIGNER_TOKEN: token }, stdio: ["ignore", "pipe", "inherit"], cwd: folder });
+  running.add(child);
+  child.ended = new Promise((resolve) => child.on("exit", (code, signal) => {
+    running.delete(child);
+    resolve(code ?? signal);
+  }));
+  child.stdout.on("data", (text) => { child.said = (child.said ?? "") + text; });
+  return child;
+}
+
+const launch = () => run("launch", mission, "--no-log", ...choice);
+
+async function startDesigner(at) {
+  designer = run("designer", "--watch", "--profile", mission, ...choice.slice(0, 2), "--faults", "--no-browser", "--port", String(at));
+  await until(() => designer.said?.includes("http://"));
+  port = Number(designer.said.match(/127\.0\.0\.1:(\d+)/)[1]);
+}
+
+async function until(holds) {
+  const end = Date.now() + patience;
+  while (!(await holds())) {
+    assert(Date.now() < end, `not in time: ${holds}`);
+    await new Promise((resolve) => setTimeout(resolve, 50));
+  }
+}
+
+const box = (name) => page.locator(`.box[data-id="${name}"]`);
+const readyBoxes = () => page.locator(".box.ready").count();
+const pids = () => page.evaluate(async () => (await (await fetch("state.json")).json()).entities.flatMap((entity) => entity.services))
+  .then((services) => Object.fromEntries(services.map((each) => [each.csp, each.pid])));
+
+before(async () => {
+  browser = await chromium.launch({ executablePath: "/usr/bin/chromium", args: ["--no-sandbox"] });
+  page = await browser.newPage({ viewport: { width: 1366, height: 768 } });
+  page.on("pageerror", (error) => complaints.push(error.stack ?? error.message));
+  page.on("console", (message) => message.type() === "error" && complaints.push(message.text()));
+  await startDesigner(0);
+});
+
+after(async () => {
+  await browser?.close();
+  const left = [...running];
+  for (const child of left) child.kill("SIGTERM");
+  await Promise.all(left.map((child) => child.ended));
+  rmSync(folder, { recursive: true, force: true });
+});
+
+test("before anybody is there, the plan is shown as missing", async () => {
+  await page.goto(`http://127.0.0.1:${port}/${token}/`);
+  await until(async () => (await page.locator(".box.missing").count()) === 13);
+  await until(async () => (await page.locator(".line.missing").count()) > 0);
+  await page.getByRole("tab", { name: "Mission" }).click();
+  await page.getByText("No launcher of this user flies a mission").waitFor();
+});
+
+test("the mission starts, and all thirteen are ready in one view", async () => {
+  running.mission = launch();
+  await until(async () => (await readyBoxes()) === 13);
+  await page.locator("#fit").click();
+  const canvas = await page.locator("#canvas").boundingBox();
+  for (const each of await page.locator(".box").all()) {
+    const seen = await each.boundingBox();
+    assert(seen.x >= canvas.x && seen.y >= canvas.y && seen.x + seen.width <= canvas.x + canvas.width &&
+      seen.y + seen.height <= canvas.y + canvas.height, `${await each.textContent()} is not in view`);
+    assert(seen.width > 110, "a box is too small to be read");
+  }
+});
+
+test("lines tell what is called, how often and how long, and topics", async () => {
+  await until(async () => (await page.locator(".label.calls").allTextContents()).some((text) => /^INavigator \d.*\/s.* ms, p99 /.test(text)));
+  assert(await page.locator(".line.values").count() > 10);
+  const shared = await page.locator(".line").count();
+  await page.locator("#shared").click();
+  await until(async () => (await page.locator(".line").count()) > shared);
+  await page.locator("#shared").click();
+  await page.locator("#values").click();
+  await until(async () => (await page.locator(".line.values").count()) === 0);
+  await page.locator("#values").click();
+});
+
+test("everything is reached by keyboard", async () => {
+  const focused = () => page.evaluate(() => document.activeElement?.closest(".box")?.dataset.id);
+  await page.locator("#as-table").focus();
+  for (let i = 0; i < 3 && !(await focused()); ++i) await page.keyboard.press("Tab");
+  const seen = new Set();
+  for (const key of ["ArrowDown", "ArrowRight", "ArrowUp", "ArrowLeft"]) {
+    for (let i = 0; i < 6; ++i) {
+      seen.add(await focused());
+      await page.keyboard.press(key);
+    }
+  }
+  assert(seen.size >= 8, `arrow keys reach ${[...seen]}`);
+  const name = await focused();
+  await page.keyboard.press("Enter");
+  await page.getByRole("heading", { name }).waitFor();
+  const before = await box(name).boundingBox();
+  await page.keyboard.press("Alt+ArrowDown");
+  assert((await box(name).boundingBox()).y > before.y);
+  const rows = await box(name).locator("li").count();
+  await page.keyboard.press(" ");
+  await until(async () => (await box(name).locator("li").count()) === 0);
+  await page.keyboard.press(" ");
+  await until(async () => (await box(name).locator("li").count()) === rows);
+  await page.keyboard.press("Escape");
+});
+
+test("a box that was moved stays where it is, also for who comes later", async () => {
+  const head = box(navigator).locator(".head");
+  const from = await head.boundingBox();
+  await page.mouse.move(from.x + 20, from.y + 10);
+  await page.mouse.down();
+  await page.mouse.move(from.x - 60, from.y + 60, { steps: 5 });
+  await page.mouse.up();
+  const place = () => box(navigator).evaluate((element) => element.style.transform);
+  const moved = await place();
+  await page.waitForTimeout(1500);
+  assert.equal(await place(), moved);
+  await page.reload();
+  await until(async () => (await readyBoxes()) === 13);
+  assert.equal(await place(), moved);
+});
+
+test("systems fold to one box", async () => {
+  await page.locator(".frame button").first().click();
+  await until(async () => (await page.locator(".box").count()) === 1);
+  await page.locator(".box .head").focus();
+  await page.keyboard.press(" ");
+  await until(async () => (await readyBoxes()) === 13);
+});
+
+test("a decision opens with its reasons", async () => {
+  await page.getByRole("tab", { name: "Decisions" }).click();
+  await page.locator("details").first().waitFor();
+  const first = page.locator("details", { hasText: "uav-1/nhp" }).first();
+  await first.locator("summary").click();
+  assert.match(await first.locator("pre").textContent(), /strategy/);
+});
+
+test("who cannot see finds nothing missing", async () => {
+  for (const [scheme, table] of [["light", false], ["dark", false], ["dark", true], ["light", true]]) {
+    await page.emulateMedia({ colorScheme: scheme });
+    if ((await page.locator("#tables").isVisible()) !== table) await page.locator("#as-table").click();
+    for (const name of table || scheme === "dark" ? ["Decisions"] : ["Details", "Mission", "Decisions", "Log"]) {
+      await page.getByRole("tab", { name }).click();
+      await page.evaluate(axe);
+      const found = await page.evaluate(() => axe.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "best-practice"] }));
+      assert.deepEqual(found.violations.map((each) => `${each.id}: ${each.nodes[0].html}: ${each.nodes[0].failureSummary}`), []);
+    }
+  }
+  await page.locator("table").first().waitFor();
+  assert.equal(await page.locator("table").nth(0).locator("tbody tr").count(), 13);
+  await page.locator("#as-table").click();
+});
+
+test("on a telephone there is no sideways scrolling", async () => {
+  await page.setViewportSize({ width: 390, height: 844 });
+  assert(await page.evaluate(() => document.documentElement.scrollWidth <= 390));
+  assert((await page.locator("#canvas").boundingBox()).height > 300);
+  await page.setViewportSize({ width: 1366, height: 768 });
+  await page.locator("#fit").click();
+});
+
+test("a CSP is killed by keyboard, and its replacement is seen", async () => {
+  const pid = (await pids()).AStar;
+  await page.getByRole("tab", { name: "Details" }).click();
+  await box(navigator).locator(".head").focus();
+  await page.keyboard.press("Enter");
+  const row = page.locator("#panel li", { hasText: "AStar" }).first();
+  await row.getByRole("button", { name: "Kill" }).focus();
+  await page.keyboard.press("Enter");
+  await row.getByText("Kill AStar?").waitFor();
+  await page.keyboard.press("Shift+Tab");
+  await page.keyboard.press("Enter");
+  await page.getByText("navigator/AStar is killed").waitFor();
+  await row.getByText("was restarted once, last ended by signal 9 (Killed)").waitFor();
+  await until(async () => ![0, pid].includes((await pids()).AStar));
+});
+
+test("the server goes and comes back, and the page says so and recovers", async () => {
+  designer.kill("SIGKILL");
+  await page.locator("#bar", { hasText: "There is no connection to skein designer; this is of" }).waitFor();
+  complaints.length = 0;
+  await startDesigner(port);
+  await page.locator("#bar").waitFor({ state: "hidden" });
+  complaints.length = 0; // the attempts between
+  await until(async () => (await readyBoxes()) === 13);
+});
+
+test("the launcher dies, and the page says what is gone; a new one is found", async () => {
+  running.mission.kill("SIGKILL");
+  await until(async () => (await readyBoxes()) === 0);
+  await page.getByRole("tab", { name: "Mission" }).click();
+  await page.getByText("No launcher of this user flies a mission").waitFor();
+  running.mission = launch();
+  await until(async () => (await readyBoxes()) === 13);
+  await page.getByRole("button", { name: "Stop the mission" }).waitFor();
+});
+
+test("a foreign page, another name, another token and a mass of data get nothing", async () => {
+  const ask = (options, body) => new Promise((resolve) => {
+    const request = http.request({ host: "127.0.0.1", port, path: `/${token}/state.json`, ...options }, (response) => resolve(response.statusCode));
+    request.on("error", () => resolve(0));
+    request.end(body);
+  });
+  assert.equal(await ask({}), 200);
+  assert.equal(await ask({ path: "/state.json" }), 401);
+  assert.equal(await ask({ path: `/${token}x/state.json` }), 401);
+  assert.equal(await ask({ path: `/${token}/../../../etc/passwd` }), 404);
+  assert.equal(await ask({ headers: { Host: `rebound.example:${port}` } }), 403);
+  assert.equal(await ask({ headers: { Origin: "http://rebound.example" } }), 403);
+  assert.notEqual(await ask({ method: "POST" }, Buffer.alloc(100 << 20)), 200);
+  const socket = (headers) => new Promise((resolve) => {
+    const made = new WebSocket(`ws://127.0.0.1:${port}/${token}/socket`, { headers });
+    made.on("open", () => resolve(made)).on("error", () => resolve(null));
+  });
+  assert.equal(await socket({ Origin: "http://rebound.example" }), null);
+  const much = await socket({});
+  much.on("error", () => undefined);
+  much.send("x".repeat(100 << 20));
+  await new Promise((resolve) => much.on("close", resolve));
+});
+
+test("fifty clients, one that never reads and one that says half a word change nothing for the page", async () => {
+  const sockets = Array.from({ length: 50 }, () => new WebSocket(`ws://127.0.0.1:${port}/${token}/socket`));
+  await Promise.all(sockets.map((each) => new Promise((resolve) => each.on("message", resolve))));
+  const deaf = new WebSocket(`ws://127.0.0.1:${port}/${token}/socket`);
+  deaf.on("open", () => deaf.pause());
+  const half = net.connect(port, "127.0.0.1", () => half.write(`GET /${token}/ HT`));
+  const time = () => page.evaluate(async () => (await (await fetch("state.json")).json()).time);
+  const now = await time();
+  await until(async () => (await time()) > now);
+  assert.equal(await readyBoxes(), 13);
+  for (const each of [...sockets, deaf]) each.terminate();
+  half.destroy();
+});
+
+test("the mission is stopped from the page", async () => {
+  await page.getByRole("button", { name: "Stop the mission" }).click();
+  await page.getByRole("button", { name: "Yes" }).click();
+  await page.getByText("the mission is being ended").waitFor();
+  assert.equal(await running.mission.ended, 143);
+  await until(async () => (await readyBoxes()) === 0);
+});
+
+test("three hundred boxes move", async (context) => {
+  const systems = 23, entities = [];
+  for (let i = 0; i < 300; ++i) {
+    entities.push({ name: `uav-${i % systems}/entity_${i}`, system: `uav-${i % systems}`, state: "ready", reason: "", process: "", launcher: 0,
+      pid: i + 1, host: "h", program: "p", vendor: "v", version: "1", cpu: [1], memory: 1e7, threads: 9, x: (i % 20) * 290, y: Math.floor(i / 20) * 150,
+      width: 208, height: 110, services: ["A", "B", "C"].map((csp) => ({ name: "m/I", csp, state: "ready", reason: "", process: "", pid: 0, calls: [5],
+        failed: [0], waiting: 0, running: 0, p50: 1000, p99: 2000 })) });
+  }
+  const links = Array.from({ length: 900 }, (_, i) => ({ source: entities[i % 300].name, target: entities[(i * 7 + 1) % 300].name,
+    kind: i % 3 ? "Values" : "Calls", name: `n${i}`, state: "ready", transport: "DDS", reason: "", rate: [i], p50: 1000, p99: 2000 }));
+  const crowd = await browser.newPage({ viewport: { width: 1366, height: 768 } });
+  await crowd.routeWebSocket("**/socket", (route) => route.send(JSON.stringify({ domain: 1, place: "here", plan: "", faults: false,
+    time: Date.now() * 1e6, troubles: [], missions: [], entities, links, decisions: [], log: [] })));
+  await crowd.goto(`http://127.0.0.1:${port}/${token}/`);
+  await until(async () => (await crowd.locator(".box").count()) === 300);
+  const frames = async (what, x, y) => {
+    await crowd.mouse.move(x, y);
+    await crowd.mouse.down();
+    const counting = crowd.evaluate(() => new Promise((resolve) => {
+      let count = 0;
+      const begin = performance.now();
+      const next = () => (++count, performance.now() - begin < 2000 ? requestAnimationFrame(next) : resolve(count / 2));
+      requestAnimationFrame(next);
+    }));
+    let isOver = false;
+    void counting.finally(() => { isOver = true; });
+    for (let i = 0; !isOver; ++i) await crowd.mouse.move(x + (2 * i) % 200, y + i % 100);
+    await crowd.mouse.up();
+    context.diagnostic(`${what}: ${await counting} frames a second`);
+  };
+  await frames("all boxes, by dragging the drawing", 520, 760);
+  const one = await crowd.locator(".box .head").nth(150).boundingBox();
+  await frames("one box with its lines", one.x + 5, one.y + 5);
+  await crowd.close();
+});
+
+test("nothing in the page has gone wrong meanwhile", () => assert.deepEqual(complaints, []));
