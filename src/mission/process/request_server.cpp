@@ -10,6 +10,15 @@
 
 namespace skein::launch {
 
+namespace {
+
+bool has_gone(int client) {
+  pollfd end{client, 0, 0};
+  return ::poll(&end, 1, 0) == 1 && (end.revents & POLLHUP) != 0;
+}
+
+}  // namespace
+
 void RequestServer::add_to(std::vector<pollfd>& watched) const {
   if (!is_crowded_) watched.push_back({listener_, POLLIN, 0});
   for (const Client& client : clients_) watched.push_back({client.socket.get(), POLLIN, 0});
@@ -34,6 +43,7 @@ bool RequestServer::is_done(Client& client) const {
   const bool complete = end != std::string::npos;
   if (!complete && size > 0 && client.request.size() <= kLongestRequest) return false;
   if (!complete || end > kLongestRequest) return true;
+  if (has_gone(client.socket.get())) return true;  // nobody is to be surprised later
   const std::string answer = answer_(std::string_view(client.request).substr(0, end));
   // A client that does not read gets what its socket holds.
   [[maybe_unused]] const auto sent =

@@ -14,7 +14,7 @@ namespace skein::launch {
 
 /// Answers requests of one line that come over a listening Unix socket: from processes of this user
 /// and of root alone, a few at a time, and of bounded length. It never waits: whoever calls it
-/// polls its descriptors.
+/// polls its descriptors. A request whose client has gone is not carried out.
 class RequestServer {
  public:
   static constexpr std::size_t kMostClients = 8;

@@ -177,6 +177,7 @@ LaunchPlan make_launch_plan(const profile::MissionProfile& mission, const MakeAr
                                                     : kLeftOut;
     if (peer.runs_mission && !why_not.empty()) plan.mission_elsewhere = peer.name + why_not;
     const auto add = [&](ChildPlan child) {
+      child.system = peer.system;
       if (why_not.empty()) {
         // Who waits for nothing is started at once, whatever its peer waits for.
         child.layer = child.after.empty() ? 0 : order.layer(i);

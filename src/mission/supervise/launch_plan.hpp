@@ -22,6 +22,7 @@ struct ChildPlan {
   bool tells_ready = true;            ///< False: it is ready as soon as it runs.
   std::size_t layer = 0;              ///< In the order of the start.
   std::vector<Prerequisite> after{};  ///< What must be ready before it is started.
+  std::string system{};               ///< The peer's vehicle or station.
 };
 
 /// Behind the names of processes of this host that are not started.

@@ -164,12 +164,13 @@ std::string flown_instead() {
   return list.empty() ? "" : "; missions of this user fly here on domain " + list;
 }
 
-/// One for each launcher of this user.
-std::vector<Question> all_launchers() {
+/// One for each launcher of this user, or of a domain.
+std::vector<Question> all_launchers(std::optional<std::uint32_t> domain = {}) {
   std::vector<Question> questions;
   OwnHolders holders;
   for (const auto& [name, link] : bound_sockets()) {
     if (!name.starts_with(own_prefix())) continue;
+    if (domain && claimed_domain("@" + name) != domain) continue;
     if (const auto holder = holders.of(name)) questions.push_back({name, *holder});
   }
   return questions;
@@ -216,16 +217,17 @@ std::string ask_launcher(pid_t launcher, const std::string& request) {
   return checked_answer(questions.front());
 }
 
-std::vector<LauncherAnswer> ask_launchers(const std::string& request) {
-  std::vector<Question> questions = all_launchers();
+std::vector<LauncherAnswer> ask_launchers(const std::string& request,
+                                          std::optional<std::uint32_t> domain) {
+  std::vector<Question> questions = all_launchers(domain);
   ask(questions, request);
   std::vector<LauncherAnswer> answers;
   for (const Question& asked : questions) {
     if (asked.is_over && !asked.socket) continue;  // it has ended meanwhile
     try {
-      answers.push_back({checked_answer(asked), ""});
+      answers.push_back({checked_answer(asked), "", asked.launcher});
     } catch (const Unavailable& error) {
-      answers.push_back({"", error.what()});
+      answers.push_back({"", error.what(), asked.launcher});
     }
   }
   return answers;

@@ -29,11 +29,13 @@ std::string ask_launcher(pid_t launcher, const std::string& request);
 struct LauncherAnswer {
   std::string text;
   std::string failure;  ///< Why there is none: it does not answer, or refuses.
+  pid_t launcher = 0;
 };
 
-/// Asks all launchers of this user and network namespace at once; those that do not answer take
-/// some seconds together. Other users' sockets with such names cost no time.
-std::vector<LauncherAnswer> ask_launchers(const std::string& request);
+/// Asks all launchers of this user and network namespace at once, or those of a domain; those that
+/// do not answer take some seconds together. Other users' sockets with such names cost no time.
+std::vector<LauncherAnswer> ask_launchers(const std::string& request,
+                                          std::optional<std::uint32_t> domain = {});
 
 /// Keeps other launchers of this user and network namespace from flying the same mission (name,
 /// domain and systems) as the same host, while it lives. Released with the process, however it

@@ -194,6 +194,7 @@ std::string SupervisedChild::next_step() const {
 ProcessStatus SupervisedChild::status(Time now) const {
   ProcessStatus status;
   status.name = plan_.name;
+  status.system = plan_.system;
   status.state = to_string(machine_.state());
   status.layer = static_cast<std::uint32_t>(plan_.layer);
   status.pid = process_ ? static_cast<std::uint32_t>(process_->id()) : 0;

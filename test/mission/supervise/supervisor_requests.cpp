@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "core/system/abstract_socket.hpp"
+#include "mission/process/request_server.hpp"
 #include "mission/supervise/mission_claim.hpp"
 #include "shell_mission.hpp"
 #include "skein/detail/type_support.hpp"
@@ -161,12 +162,40 @@ TEST_CASE("A running process is replaced on request, whatever its rules of resta
   CHECK_THAT(mission.status(0).last_exit, Contains("by signal"));
 }
 
-TEST_CASE("A launcher of whom only the process is known is asked, and ends its mission on request") {
+TEST_CASE(
+    "A launcher of whom only the process is known is asked, and ends its mission on request") {
   RunningMission mission({shell_child("a", kWait)});
   REQUIRE(mission.becomes(0, "ready"));
   CHECK(ask_launcher(::getpid(), "stop") == "the mission is being ended");
   CHECK(mission.result().reason == "it was asked to stop");
   CHECK_THROWS_WITH(ask_launcher(1, "stop"), Contains("process 1 is no launcher of this user"));
+}
+
+TEST_CASE(
+    "A request whose client has gone, as after a time without an answer, is not carried out") {
+  profile::MissionProfile mission;
+  mission.name = "asked in vain of process " + std::to_string(::getpid());
+  const MissionClaim claim(mission, "");
+  std::vector<std::string> asked;
+  RequestServer server(claim.requests(), [&](std::string_view request) {
+    asked.emplace_back(request);
+    return std::string("ok");
+  });
+  sockaddr_un address{};
+  socklen_t size = sizeof address;
+  REQUIRE(::getsockname(claim.requests(), reinterpret_cast<sockaddr*>(&address), &size) == 0);
+  FileDescriptor patient(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  {
+    const FileDescriptor client(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+    for (const auto& [socket, request] :
+         {std::pair(client.get(), "stop\n"), {patient.get(), "x\n"}}) {
+      REQUIRE(::connect(socket, reinterpret_cast<const sockaddr*>(&address), size) == 0);
+      REQUIRE(::send(socket, request, std::strlen(request), MSG_NOSIGNAL) > 0);
+    }
+  }
+  CHECK(test::eventually([&] { return server.serve(), !asked.empty(); }));
+  server.serve();
+  CHECK(asked == std::vector<std::string>{"x"});
 }
 
 TEST_CASE("What a mission must bear is done to its processes on request") {
