@@ -237,6 +237,7 @@ struct Recorder::State {
   std::atomic<std::uint16_t> disposals{0};  // the channel, once a topic has keys
   std::mutex looking;                       // guards what follows
   std::map<std::pair<std::string, std::string>, Recorded> recorded;  // by name and type
+  std::map<std::string, std::uint16_t> notes;                        // their channels, by topic
   // These go first: their listeners use the rest.
   std::vector<std::unique_ptr<introspection::AnyReader>> own_readers;
   std::unique_ptr<introspection::AnyReader> call_reader;
@@ -264,6 +265,16 @@ std::vector<std::string> Recorder::look(Duration patience) {
   auto said = state_->follow(topics, patience);
   state_->calls.name_channels();
   return said;
+}
+
+void Recorder::note(const std::string& topic, const std::string& json) {
+  std::lock_guard lock(state_->looking);
+  std::uint16_t& channel = state_->notes[topic];
+  if (channel == 0) {
+    const auto schema = state_->writer.add_schema(topic, "jsonschema", R"({"type":"object"})");
+    channel = state_->writer.add_channel(topic, schema, {{"introspection", "true"}}, "json");
+  }
+  state_->write(channel, std::as_bytes(std::span(json)));
 }
 
 WriterStatistics Recorder::statistics() const { return state_->writer.statistics(); }

@@ -39,6 +39,9 @@ class Recorder {
   /// entities to answer. To be repeated. Returns what is new, for people.
   std::vector<std::string> look(Duration patience);
 
+  /// Adds what somebody else has seen, as JSON: a message on a channel of that name.
+  void note(const std::string& topic, const std::string& json);
+
   /// What was written and dropped so far. The entities' own drops are in it by channel.
   WriterStatistics statistics() const;
 

@@ -2,10 +2,13 @@
 #include <chrono>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 
 #include "brokerless_discovery/broker.hpp"
 #include "command/commands.hpp"
+#include "command/designer/recorded_states.hpp"
+#include "command/designer/watch.hpp"
 #include "command/look/topic_survey.hpp"
 #include "command/print/interruption.hpp"
 #include "command/print/json_output.hpp"
@@ -15,6 +18,7 @@
 #include "core/system/whole_file.hpp"
 #include "core/wall_clock.hpp"
 #include "recording/recorder.hpp"
+#include "skein/detail/type_support.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
 
@@ -73,6 +77,18 @@ void print_counts_json(const recording::WriterStatistics& statistics) {
              true);
 }
 
+/// What is to be seen of the domain now, if anybody is there.
+void note_state(designer::DomainWatch& watch, recording::Recorder& recorder) {
+  const designer::DomainState state = watch.look();
+  if (!state.entities.empty()) recorder.note(designer::kStates, idl::to_json(state));
+}
+
+bool has_mission(const recording::WriterStatistics& statistics) {
+  return std::ranges::any_of(statistics.channels, [](const auto& channel) {
+    return channel.topic != designer::kStates && channel.written > 0;
+  });
+}
+
 /// Of the topics that were asked for, those that nobody had.
 void tell_missing(const std::vector<std::string>& wanted,
                   const std::vector<recording::ChannelStatistics>& channels, Inspector& inspector) {
@@ -98,6 +114,9 @@ int record(const RecordArguments& arguments) {
   recording::Recorder recorder(entity, file, options_of(arguments, interruption));
   std::fprintf(stderr, "skein: recording into %s what domain %u has; Ctrl-C ends it\n",
                printable(file, kLongestProblem).c_str(), arguments.watched_domain());
+  std::optional<designer::DomainWatch> watch;
+  if (!arguments.only_topics)
+    watch.emplace(entity, arguments.watched_domain(), std::nullopt, interruption.gives_up());
   bool alone = true;
   using std::chrono::steady_clock;
   const auto end = steady_clock::now() + std::chrono::duration_cast<Duration>(
@@ -106,6 +125,7 @@ int record(const RecordArguments& arguments) {
     for (const std::string& topic : recorder.look(kAnswerPatience)) {
       std::fprintf(stderr, "skein: topic %s\n", printable(topic, kLongestProblem).c_str());
     }
+    if (watch) note_state(*watch, recorder);
     if (!recorder.statistics().failure.empty()) break;
     if (std::exchange(alone, false) && entity.broker().all().empty())
       tell_missions_elsewhere(arguments);
@@ -121,7 +141,7 @@ int record(const RecordArguments& arguments) {
   }
   print_counts(recorder.statistics());
   tell_missing(arguments.topics, recorder.statistics().channels, inspector);
-  if (recorder.statistics().written() > 0) return 0;
+  if (has_mission(recorder.statistics())) return 0;
   std::fputs("skein: nothing was recorded\n", stderr);
   return kNothingThere;
 }
