@@ -293,13 +293,15 @@ int serve_view(const ViewArguments& arguments);
 
 struct DesignerArguments : Onlooker {
   bool watch = false;
+  std::string replay;  ///< A recording, in place of the domain.
   std::uint16_t port = 8080;
   std::string token;  ///< Empty: a random one.
   bool faults = false;
   bool no_browser = false;
 };
 
-/// `skein designer`: a page that shows a domain while missions fly there, until interrupted.
+/// `skein designer`: a page that shows a domain while missions fly there, or a recording, until
+/// interrupted.
 int serve_designer(const DesignerArguments& arguments);
 
 struct RecordArguments : Onlooker {

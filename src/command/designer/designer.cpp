@@ -1,18 +1,20 @@
-#include <spawn.h>
-#include <unistd.h>
-
-#include <array>
 #include <cstdio>
 #include <cstdlib>
+#include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 
+#include "browser.hpp"
 #include "command/commands.hpp"
+#include "command/mission/missions_elsewhere.hpp"
 #include "command/print/interruption.hpp"
+#include "core/printable.hpp"
 #include "layout.hpp"
 #include "mission/profile/mission_profile.hpp"
 #include "mission/supervise/mission_claim.hpp"
 #include "page_hub.hpp"
+#include "recorded_states.hpp"
 #include "requests.hpp"
 #include "site.hpp"
 #include "skein/detail/type_support.hpp"
@@ -26,8 +28,9 @@ namespace {
 
 using namespace designer;
 
-constexpr double kPeriodSeconds = 1;
+constexpr double kLookSeconds = 1;
 constexpr double kUntilWatchedSeconds = 0.2;
+constexpr std::size_t kLongestWarning = 1024;
 
 std::optional<Plan> plan_in(const DesignerArguments& arguments) {
   if (arguments.profile.empty()) return std::nullopt;
@@ -35,13 +38,15 @@ std::optional<Plan> plan_in(const DesignerArguments& arguments) {
                                                profile::parse_variables(arguments.variables)));
 }
 
-/// What the looking thread and that of requests share.
-class SharedLayout {
+/// What the looking thread and those of requests share.
+class Shown {
  public:
   void arrange(DomainState& state) {
     std::lock_guard lock(mutex_);
     layout_.arrange(state.entities, state.links);
     if (!layout_.failure().empty()) state.troubles.push_back(layout_.failure());
+    launchers_.clear();
+    for (const auto& mission : state.missions) launchers_.insert(mission.launcher);
   }
   void move(const std::string& entity, Place to) {
     std::lock_guard lock(mutex_);
@@ -51,10 +56,18 @@ class SharedLayout {
     std::lock_guard lock(mutex_);
     layout_.forget();
   }
+  /// A page does not reach missions that it does not show.
+  void demand_launcher(int launcher) {
+    std::lock_guard lock(mutex_);
+    if (launcher > 0 && launchers_.contains(static_cast<std::uint32_t>(launcher))) return;
+    throw Unavailable("process " + std::to_string(launcher) +
+                      " is no launcher of a mission that is shown here");
+  }
 
  private:
   std::mutex mutex_;
   Layout layout_;
+  std::set<std::uint32_t> launchers_;
 };
 
 view::WebSocketOptions socket_options(const DesignerArguments& arguments) {
@@ -68,41 +81,55 @@ view::WebSocketOptions socket_options(const DesignerArguments& arguments) {
   return options;
 }
 
-/// Where there is a desktop. Nobody waits for it.
-void open_browser(const std::string& url) {
-  if (!std::getenv("DISPLAY") && !std::getenv("WAYLAND_DISPLAY")) return;
-  std::string program = "xdg-open", argument = url;
-  std::array<char*, 3> arguments{program.data(), argument.data(), nullptr};
-  pid_t process = 0;
-  ::posix_spawnp(&process, program.c_str(), nullptr, nullptr, arguments.data(), environ);
+/// The listener and where it is.
+class OpenSite {
+ public:
+  OpenSite(const DesignerArguments& arguments, Site::Content content,
+           const std::shared_ptr<PageHub>& hub)
+      : site_(arguments.token.empty() ? view::random_token() : arguments.token, std::move(content)),
+        listener_(
+            socket_options(arguments),
+            [this](const view::Visit& visit) { return site_.reply(visit); },
+            [hub](view::Connection& connection) { return hub->open(connection); }) {
+    site_.listens_at(listener_.port());
+    std::printf("Open this in a browser. Whoever knows it may look%s.\n%s\n",
+                arguments.watch ? ", and restart and stop missions" : "", site_.url().c_str());
+    std::fflush(stdout);
+    if (!arguments.no_browser) browser_.emplace(site_.url());
+  }
+
+ private:
+  Site site_;
+  const view::WebSocketListener listener_;
+  std::optional<Browser> browser_;
+};
+
+int replay(const DesignerArguments& arguments) {
+  const Interruption interruption;
+  const RecordedStates states(arguments.replay);
+  for (const std::string& problem : states.problems())
+    std::fprintf(stderr, "skein: %s\n", printable(problem, kLongestWarning).c_str());
+  const auto at = [&](std::optional<std::uint64_t> time) { return states.at(time.value_or(0)); };
+  const OpenSite site(arguments, {at, states.times()}, nullptr);
+  interruption.wait(0);
+  return 0;
 }
 
-}  // namespace
-
-int serve_designer(const DesignerArguments& arguments) {
+int watch_domain(const DesignerArguments& arguments) {
   const Interruption interruption;
   const std::optional<Plan> plan = plan_in(arguments);
   const std::uint32_t domain = arguments.watched_domain();
   Entity entity = join(arguments, "designer");
-  SharedLayout layout;
-  const Powers powers{[](int launcher, const std::string& request) {
+  Shown shown;
+  const Powers powers{[&](int launcher, const std::string& request) {
+                        shown.demand_launcher(launcher);
                         return launch::ask_launcher(launcher, request);
                       },
-                      [&](const std::string& name, Place to) { layout.move(name, to); },
-                      [&] { layout.forget(); }, arguments.faults};
-  const auto hub =
-      std::make_shared<PageHub>([&](std::string_view request) { return obey(request, powers); });
-  Site site(arguments.token.empty() ? view::random_token() : arguments.token,
-            [&] { return hub->look(); });
-  const view::WebSocketListener listener(
-      socket_options(arguments), [&](const view::Visit& visit) { return site.reply(visit); },
-      [&](view::Connection& connection) { return hub->open(connection); });
-  site.listens_at(listener.port());
-  std::printf(
-      "Open this in a browser. Whoever knows it may look, and restart and stop missions.\n%s\n",
-      site.url().c_str());
-  std::fflush(stdout);
-  if (!arguments.no_browser) open_browser(site.url());
+                      [&](const std::string& name, Place to) { shown.move(name, to); },
+                      [&] { shown.forget(); }, arguments.faults};
+  const auto hub = std::make_shared<PageHub>(PageHub::Obey{
+      [&](std::string_view request) { return obey(request, powers); }, asks_launcher});
+  const OpenSite site(arguments, {[&](auto) { return hub->look(); }}, hub);
   std::optional<DomainWatch> watch;  // none while nobody looks
   do {
     if (!hub->is_watched()) {
@@ -114,11 +141,20 @@ int serve_designer(const DesignerArguments& arguments) {
     DomainState state = watch->look();
     state.faults = arguments.faults;
     if (plan) state.plan = plan->file;
-    layout.arrange(state);
+    shown.arrange(state);
+    if (const std::string elsewhere = missions_elsewhere(domain);
+        state.entities.empty() && !elsewhere.empty())
+      state.troubles.push_back(elsewhere);
     hub->publish(std::make_shared<const std::string>(idl::to_json(state)));
-  } while (!interruption.wait(watch ? kPeriodSeconds : kUntilWatchedSeconds));
+  } while (!interruption.wait(watch ? kLookSeconds : kUntilWatchedSeconds));
   hub->close();
   return 0;
+}
+
+}  // namespace
+
+int serve_designer(const DesignerArguments& arguments) {
+  return arguments.watch ? watch_domain(arguments) : replay(arguments);
 }
 
 }  // namespace skein::command

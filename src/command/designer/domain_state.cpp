@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 #include <tuple>
+#include <utility>
 
 #include "command/print/figures.hpp"
 #include "core/log.hpp"
@@ -37,13 +38,13 @@ std::string after_slash(const std::string& name) { return name.substr(name.find(
 std::string before_slash(const std::string& name) { return name.substr(0, name.find('/')); }
 
 /// A CSP in a process of its own belongs to the entity that may use it.
-std::string home_of(const PeerPicture& peer, const DomainPicture& picture) {
+/// Without a description, as while it starts or hangs, its name tells.
+std::string home_of(const PeerPicture& peer, const std::set<std::string>& known) {
   for (const auto& service : peer.services) {
     if (!service->owner.empty()) return service->owner;
   }
   const std::string owner = peer.name.substr(0, peer.name.find_last_of('.'));
-  const bool stands_alone = std::ranges::count(picture, owner, &PeerPicture::name) == 0;
-  return stands_alone ? peer.name : owner;
+  return known.contains(owner) ? owner : peer.name;
 }
 
 void add_process(const PeerPicture& peer, const top::PeerRow& row, EntityState& entity) {
@@ -71,11 +72,20 @@ EntityState& entity_named(const std::string& name, Entities& entities) {
   return entity;
 }
 
-Draft draft_of(const DomainPicture& picture, const std::vector<top::PeerRow>& rows) {
+void add_csp_process(const PeerPicture& peer, const top::PeerRow& row, ServiceState& csp) {
+  csp.pid = row.pid;
+  if (row.cpu) csp.cpu.push_back(*row.cpu);
+  if (peer.process) return;
+  csp.state = "silent";
+  csp.reason = "its process does not answer";
+}
+
+Draft draft_of(const DomainPicture& picture, const std::vector<top::PeerRow>& rows,
+               const std::set<std::string>& known) {
   Draft draft;
   for (std::size_t i = 0; i < picture.size(); ++i) {
     const PeerPicture& peer = picture[i];
-    const std::string home = home_of(peer, picture);
+    const std::string home = home_of(peer, known);
     draft.homes[peer.participant] = home;
     EntityState& entity = entity_named(home, draft.entities);
     const bool own = home == peer.name;
@@ -85,7 +95,7 @@ Draft draft_of(const DomainPicture& picture, const std::vector<top::PeerRow>& ro
       state.name = printable(service->service);
       state.state = "ready";
       if (!service->owner.empty()) state.csp = printable(service->entity);
-      if (!own) state.pid = rows[i].pid;
+      if (!own) add_csp_process(peer, rows[i], state);
       draft.providers[Guid{service->provider}] = {home, entity.services.size()};
       entity.services.push_back(std::move(state));
     }
@@ -104,7 +114,8 @@ ServiceState* service_of(const introspection::ServiceStatistics& service, Draft&
     place = draft.providers.emplace(provider, ServicePlace{home->second, services.size()}).first;
     services.emplace_back();
     services.back().name = printable(service.service);
-    services.back().csp = printable(service.entity);
+    const bool is_csp = service.entity != after_slash(home->second);
+    if (is_csp) services.back().csp = printable(service.entity);
     services.back().state = "ready";
   }
   return &draft.entities[place->second.entity].services[place->second.index];
@@ -118,6 +129,7 @@ void add_statistics(const std::vector<introspection::ServiceStatistics>& statist
     const top::ServiceRow& row = rows[i];
     if (row.calls) state->calls.push_back(*row.calls);
     if (row.failed) state->failed.push_back(*row.failed);
+    for (const auto& operation : statistics[i].operations) state->total += operation.received;
     state->waiting = row.waiting;
     state->running = row.running;
     state->p50 = row.p50;
@@ -150,6 +162,7 @@ void add_calls(const DomainPicture& picture, const Draft& draft, Traffics& traff
                       "ready",
                       printable(connection.transport),
                       printable(connection.not_faster, kLongestText),
+                      0,
                       {},
                       service.p50,
                       service.p99};
@@ -194,6 +207,7 @@ void add_values(const DomainPicture& picture, const Draft& draft, Traffics& traf
                       "ready",
                       "",
                       "",
+                      0,
                       {},
                       0,
                       0};
@@ -206,33 +220,26 @@ std::string times(std::uint32_t count) {
 }
 
 /// What a launcher says of a process which is there, or is to be.
-void add_launchers_word(const launch::ProcessStatus& process, std::string& state,
+void add_launchers_word(const launch::ProcessStatus& process, bool is_stopped, std::string& state,
                         std::string& reason) {
-  const bool seen = state == "ready" || state == "degraded";
+  const bool seen = state == "ready" || state == "degraded" || state == "silent";
   if (process.state != "ready") {
     state = process.state;
     reason = printable(process.reason, kLongestText);
+    if (state == "interrupted" || state == "terminated")
+      reason = "it was told to end, and has not ended yet";
     if (reason.empty() && !process.last_exit.empty())
       reason = "its process ended " + printable(process.last_exit, kLongestText);
-  } else if (!seen && state != "silent") {
+  } else if (is_stopped) {
+    state = "hangs";
+    reason = "its process is stopped, and answers nobody; restart it";
+  } else if (!seen) {
     state = "missing";
     reason = "its process runs, but nobody is seen of it on this domain";
   } else if (process.restarts > 0 && reason.empty()) {
     reason = "was restarted " + times(process.restarts) + ", last ended " +
              printable(process.last_exit, kLongestText);
   }
-}
-
-/// The entity that a launcher's process is, by the name that the profile gives it.
-EntityState& entity_of_process(const std::string& peer, const launch::MissionStatus& mission,
-                               Entities& entities) {
-  std::set<std::string> systems;
-  for (auto& [name, entity] : entities) {
-    if (after_slash(name) == peer) return entity;
-    systems.insert(before_slash(name));
-  }
-  const std::string system = systems.size() == 1 ? *systems.begin() : mission.mission;
-  return entity_named(system + "/" + peer, entities);
 }
 
 ServiceState& csp_named(const std::string& csp, EntityState& entity) {
@@ -243,19 +250,22 @@ ServiceState& csp_named(const std::string& csp, EntityState& entity) {
   return entity.services.back();
 }
 
-void add_missions(const std::vector<launch::MissionStatus>& missions, Entities& entities) {
-  for (const auto& mission : missions) {
+void add_missions(const Sight& sight, Entities& entities) {
+  for (const auto& mission : sight.missions) {
+    if (mission.launcher == 0) continue;  // it has ended
     for (const auto& process : mission.processes) {
-      EntityState& entity = entity_of_process(before_slash(process.name), mission, entities);
+      EntityState& entity =
+          entity_named(process.system + "/" + before_slash(process.name), entities);
+      const bool is_stopped = process.pid != 0 && sight.stopped.contains(process.pid);
       entity.launcher = mission.launcher;
       if (process.name.find('/') == std::string::npos) {
         entity.process = process.name;
-        add_launchers_word(process, entity.state, entity.reason);
+        add_launchers_word(process, is_stopped, entity.state, entity.reason);
       } else {
         ServiceState& csp = csp_named(after_slash(process.name), entity);
         csp.process = process.name;
         csp.pid = process.pid;
-        add_launchers_word(process, csp.state, csp.reason);
+        add_launchers_word(process, is_stopped, csp.state, csp.reason);
       }
     }
   }
@@ -268,6 +278,34 @@ bool has_service(const Plan::Service& wanted, const EntityState& entity) {
   });
 }
 
+void mark_unplanned(std::string& state, std::string& reason) {
+  if (state == "ready") {
+    state = "unplanned";
+    reason = "the plan does not have it";
+  } else if (state != "missing") {
+    reason += (reason.empty() ? "" : "; ") + std::string("the plan does not have it");
+  }
+}
+
+void add_planned_services(const Plan::Entity& wanted, EntityState& entity) {
+  for (ServiceState& service : entity.services) {
+    const bool is_planned = std::ranges::any_of(wanted.services, [&](const auto& each) {
+      return each.csp == service.csp && (!each.csp.empty() || each.name == service.name);
+    });
+    if (!is_planned) mark_unplanned(service.state, service.reason);
+  }
+  for (const Plan::Service& service : wanted.services) {
+    if (has_service(service, entity)) continue;
+    ServiceState state;
+    state.name = service.name;
+    state.csp = service.csp;
+    state.process = service.process;
+    state.state = "missing";
+    state.reason = "the plan has it, and the entity does not";
+    entity.services.push_back(std::move(state));
+  }
+}
+
 /// What the plan has and nobody has seen, and what is there without being planned.
 void add_plan(const Plan& plan, Entities& entities) {
   std::set<std::string> planned;
@@ -278,25 +316,41 @@ void add_plan(const Plan& plan, Entities& entities) {
       entity.state = "missing";
       entity.reason = "the plan has it, and nobody of this name is on this domain";
     }
-    for (const Plan::Service& service : wanted.services) {
-      if (has_service(service, entity)) continue;
-      ServiceState state;
-      state.name = service.name;
-      state.csp = service.csp;
-      state.process = service.process;
-      state.state = "missing";
-      state.reason = "the plan has it, and the entity does not";
-      entity.services.push_back(std::move(state));
-    }
+    add_planned_services(wanted, entity);
   }
-  for (auto& [name, entity] : entities) {
-    if (planned.contains(name) || entity.state != "ready") continue;
-    entity.state = "unplanned";
-    entity.reason = "the plan does not have it";
+  for (auto& [name, entity] : entities)
+    if (!planned.contains(name)) mark_unplanned(entity.state, entity.reason);
+}
+
+void forget_process(const std::string& state, ServiceState& service) {
+  service.state = state;
+  service.reason.clear();
+  service.process.clear();
+  service.pid = 0;
+  service.cpu.clear();
+  service.calls.clear();
+}
+
+/// Of an entity of which nobody is seen at the moment.
+void keep_services(const EntityState& before, EntityState& entity) {
+  for (const ServiceState& service : before.services) {
+    const auto now = std::ranges::find_if(entity.services, [&](const ServiceState& each) {
+      return each.csp == service.csp && (!service.csp.empty() || each.name == service.name);
+    });
+    if (now != entity.services.end()) {
+      now->name = service.name;  // which a launcher does not know
+    } else {
+      entity.services.push_back(service);
+      forget_process("missing", entity.services.back());
+    }
   }
 }
 
-void add_planned_links(const Plan& plan, std::vector<Link>& links) {
+bool is_away(const EntityState& entity) {
+  return entity.state == "missing" || entity.state == "gone" || entity.state == "ended";
+}
+
+void add_planned_links(const Plan& plan, const Entities& entities, std::vector<Link>& links) {
   const auto is_there = [&](const std::string& from, const std::string& to,
                             const std::string& interface) {
     return std::ranges::any_of(links, [&](const Link& link) {
@@ -312,13 +366,17 @@ void add_planned_links(const Plan& plan, std::vector<Link>& links) {
         if (!provides || server.name == client.name || server.system != client.system ||
             is_there(client.name, server.name, interface))
           continue;
+        const bool away = is_away(entities.at(server.name));
+        const char* const reason = away ? "it depends on this, which is not there"
+                                        : "it depends on this, and has not connected to it";
         links.push_back({client.name,
                          server.name,
                          LinkKind::Calls,
                          interface,
-                         "missing",
+                         away ? "missing" : "unused",
                          "",
-                         "the plan has it, and there is no connection",
+                         reason,
+                         0,
                          {},
                          0,
                          0});
@@ -327,20 +385,20 @@ void add_planned_links(const Plan& plan, std::vector<Link>& links) {
   }
 }
 
-void add_quarantines(const std::vector<introspection::Decision>& decisions, Entities& entities) {
-  for (const auto& decision : decisions) {
+void add_quarantines(const Sight& sight, Entities& entities) {
+  for (const auto& decision : sight.decisions) {
+    const auto age = static_cast<std::int64_t>(sight.wall_time - decision.time);
     const auto entity = entities.find(decision.entity);
     if (entity == entities.end()) continue;
     for (const auto& candidate : decision.candidates) {
       const auto csp =
           std::ranges::find(entity->second.services, candidate.csp, &ServiceState::csp);
       if (csp == entity->second.services.end() || csp->state != "ready" ||
-          candidate.breaker != introspection::BreakerState::Open)
+          candidate.breaker != introspection::BreakerState::Open || candidate.quarantine <= age)
         continue;
       csp->state = "quarantined";
-      csp->reason =
-          "it failed again and again, and is tried again in " +
-          short_time(static_cast<std::uint64_t>(std::max<std::int64_t>(candidate.quarantine, 0)));
+      csp->reason = "it failed again and again, and is tried again in " +
+                    short_time(static_cast<std::uint64_t>(candidate.quarantine - age));
     }
   }
 }
@@ -348,7 +406,7 @@ void add_quarantines(const std::vector<introspection::Decision>& decisions, Enti
 }  // namespace
 
 DomainState StateMaker::make(const Sight& sight) {
-  Draft draft = draft_of(sight.picture, rates_.peers(sight.picture));
+  Draft draft = draft_of(sight.picture, rates_.peers(sight.picture), names(sight));
   add_statistics(sight.statistics, rates_.services(sight.statistics, sight.time), draft);
   Traffics traffics;
   add_calls(sight.picture, draft, traffics);
@@ -358,7 +416,7 @@ DomainState StateMaker::make(const Sight& sight) {
       time_before_ == 0 ? 0 : static_cast<double>(sight.time - time_before_) / kSecond;
   std::map<std::string, std::uint64_t> counts;
   for (auto& [key, traffic] : traffics) {
-    counts[key] = traffic.count;
+    counts[key] = traffic.link.total = traffic.count;
     const auto before = counts_before_.find(key);
     if (seconds > 0 && before != counts_before_.end() && before->second <= traffic.count)
       traffic.link.rate.push_back(static_cast<double>(traffic.count - before->second) / seconds);
@@ -366,14 +424,13 @@ DomainState StateMaker::make(const Sight& sight) {
   }
   counts_before_ = std::move(counts);
   time_before_ = sight.time;
+  add_missions(sight, draft.entities);
+  remember(sight, draft.entities);
   if (plan_) {
-    for (const Plan::Entity& wanted : plan_->entities) entity_named(wanted.name, draft.entities);
-    add_planned_links(*plan_, state.links);
+    add_plan(*plan_, draft.entities);
+    add_planned_links(*plan_, draft.entities, state.links);
   }
-  add_missions(sight.missions, draft.entities);
-  remember(sight.time, draft.entities);
-  if (plan_) add_plan(*plan_, draft.entities);
-  add_quarantines(sight.decisions, draft.entities);
+  add_quarantines(sight, draft.entities);
   for (auto& [name, entity] : draft.entities) {
     std::ranges::stable_sort(entity.services, {}, [](const ServiceState& service) {
       return std::tuple(!service.csp.empty(), service.name, service.csp);
@@ -383,10 +440,29 @@ DomainState StateMaker::make(const Sight& sight) {
   return state;
 }
 
-void StateMaker::remember(std::uint64_t now, Entities& entities) {
+/// Of entities that are or may be there.
+std::set<std::string> StateMaker::names(const Sight& sight) const {
+  std::set<std::string> names;
+  for (const PeerPicture& peer : sight.picture) names.insert(peer.name);
+  for (const auto& [name, known] : known_) names.insert(name);
+  for (const auto& mission : sight.missions)
+    for (const auto& process : mission.processes)
+      names.insert(process.system + "/" + before_slash(process.name));
+  if (plan_)
+    for (const Plan::Entity& wanted : plan_->entities) names.insert(wanted.name);
+  return names;
+}
+
+void StateMaker::remember(const Sight& sight, Entities& entities) {
+  const std::uint64_t now = sight.time;
   for (auto& [name, entity] : entities) {
-    if (entity.state.empty()) continue;  // it was not seen
     Known& known = known_[name];
+    if (entity.state.empty()) {
+      entity.state = "missing";
+      entity.reason = "CSPs of it are there, and nobody else";
+    }
+    // One that hangs is soon forgotten by others, and what it has is what one wants to know then.
+    if (entity.pid == 0 && known.seen > 0) keep_services(known.state, entity);
     known.silent_looks = entity.state == "silent" ? known.silent_looks + 1 : 0;
     if (known.silent_looks > 0 && known.silent_looks < kSilentLooks)
       std::tie(entity.state, entity.reason) = std::tuple("ready", "");
@@ -399,12 +475,12 @@ void StateMaker::remember(std::uint64_t now, Entities& entities) {
     EntityState& entity = entities[name];
     entity = known.state;
     entity.cpu.clear();
-    entity.state = "gone";
-    entity.reason = "was last seen " + short_time(now - known.seen) + " ago";
-    for (ServiceState& service : entity.services) {
-      service.state = "gone";
-      service.calls.clear();
-    }
+    entity.process.clear();
+    const bool ended = std::exchange(entity.launcher, 0) != 0;
+    entity.state = ended ? "ended" : "gone";
+    entity.reason = (ended ? "its mission has ended; " : "") + std::string("was last seen ") +
+                    short_time(now - known.seen) + " ago";
+    for (ServiceState& service : entity.services) forget_process(entity.state, service);
   }
 }
 

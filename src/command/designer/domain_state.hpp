@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -20,8 +21,10 @@ struct Sight {
   std::uint64_t time = 0;  ///< Nanoseconds by a clock that is never set.
   DomainPicture picture;   ///< Whole.
   std::vector<introspection::ServiceStatistics> statistics;
-  std::vector<launch::MissionStatus> missions;
-  std::vector<introspection::Decision> decisions;  ///< The latest of each Head and service.
+  std::vector<launch::MissionStatus> missions;       ///< As DomainState has them.
+  std::set<std::uint32_t> stopped{};                 ///< Those of their processes that are stopped.
+  std::vector<introspection::Decision> decisions{};  ///< The latest of each Head and service.
+  std::uint64_t wall_time = 0;                       ///< Of now, as Decision::time.
 };
 
 /// Makes the entities and links of a state from one sight after the other: rates come of two, and
@@ -43,7 +46,8 @@ class StateMaker {
     int silent_looks = 0;
   };
 
-  void remember(std::uint64_t now, std::map<std::string, EntityState>& entities);
+  std::set<std::string> names(const Sight& sight) const;
+  void remember(const Sight& sight, std::map<std::string, EntityState>& entities);
 
   const std::optional<Plan> plan_;
   top::Rates rates_;

@@ -191,13 +191,18 @@ std::vector<Place> places_by_graphviz(const Drawing& drawing) {
 void Layout::arrange(std::vector<EntityState>& entities, const std::vector<Link>& links) {
   for (EntityState& entity : entities) {
     entity.width = kWidth;
-    entity.height = kHeadHeight + kRowHeight * static_cast<double>(entity.services.size());
+    const auto has_csp = [](const ServiceState& service) { return !service.csp.empty(); };
+    const bool has_head = std::ranges::any_of(entity.services, has_csp);
+    const auto rows = entity.services.size() + (has_head ? 1 : 0);
+    entity.height = kHeadHeight + kRowHeight * static_cast<double>(rows);
   }
   const auto is_new = [&](const EntityState& entity) { return !places_.contains(entity.name); };
   const auto newcomers = static_cast<std::size_t>(std::ranges::count_if(entities, is_new));
-  if (newcomers > 0) {
-    if (!moved_ && newcomers * 3 >= entities.size()) places_.clear();
-    const Drawing drawing = drawing_of(entities, links);
+  const Drawing drawing = drawing_of(entities, links);
+  const bool knows_more = drawing.lines.size() > 3 && drawing.lines.size() >= 2 * lines_;
+  if (newcomers > 0 || (knows_more && !moved_)) {
+    if (!moved_ && (newcomers * 3 >= entities.size() || knows_more)) places_.clear();
+    if (places_.empty()) lines_ = drawing.lines.size();
     settle(drawing, placed(drawing));
   }
   std::map<std::string, Place> kept;

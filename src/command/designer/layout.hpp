@@ -33,8 +33,8 @@ struct Drawing {
 std::vector<Place> places_by_graphviz(const Drawing& drawing);
 
 /// Where the boxes of a page stand. A box keeps its place as long as it is shown, and newcomers
-/// come near those that they speak to; only where a third are newcomers, and nobody has moved
-/// anything, all are placed anew. Not thread-safe.
+/// come near those that they speak to; only where a third are newcomers, or twice as many lines are
+/// known, and nobody has moved anything, all are placed anew. Not thread-safe.
 class Layout {
  public:
   using Placer = std::function<std::vector<Place>(const Drawing& drawing)>;
@@ -58,6 +58,7 @@ class Layout {
 
   const Placer place_;
   std::map<std::string, Place> places_;
+  std::size_t lines_ = 0;  // that were known when all were placed
   bool moved_ = false;
   std::string failure_;
 };

@@ -45,7 +45,10 @@ class PageHub::Client final : public view::Session {
 
 PageHub::~PageHub() { close(); }
 
-void PageHub::close() { requests_.stop(); }
+void PageHub::close() {
+  quick_.stop();
+  waiting_.stop();
+}
 
 void PageHub::publish(std::shared_ptr<const std::string> state) {
   std::lock_guard lock(mutex_);
@@ -84,11 +87,12 @@ void PageHub::take(std::uint64_t client, std::string request) {
     }
     ++place.requests;
   }
-  requests_.post([this, client, request = std::move(request)] {
+  ThreadExecutor& executor = obey_.may_wait(request) ? waiting_ : quick_;
+  executor.post([this, client, request = std::move(request)] {
     const Json number = request_number(request);
     std::string text;
     try {
-      text = answer_text(number, true, obey_(request));
+      text = answer_text(number, true, obey_.obey(request));
     } catch (const std::exception& error) {
       text = answer_text(number, false, error.what());
     }

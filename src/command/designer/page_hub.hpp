@@ -18,12 +18,15 @@ namespace skein::command::designer {
 /// the answers to its requests. Thread-safe; no function waits for a client.
 class PageHub : public std::enable_shared_from_this<PageHub> {
  public:
-  /// Carries out a request and returns the answer; what it throws is the answer, too. Called on a
-  /// thread of the hub, one request after the other.
-  using Obey = std::function<std::string(std::string_view request)>;
+  /// Carries out a request and returns the answer; what it throws is the answer, too. Called on
+  /// threads of the hub: those of one kind one after the other, unless they may wait for others.
+  struct Obey {
+    std::function<std::string(std::string_view request)> obey;
+    std::function<bool(std::string_view request)> may_wait;
+  };
 
   /// A client that has so many requests without an answer has to wait.
-  static constexpr std::size_t kRequests = 32;
+  static constexpr std::size_t kRequests = 16;
 
   explicit PageHub(Obey obey) : obey_(std::move(obey)) {}
   ~PageHub();
@@ -63,7 +66,9 @@ class PageHub : public std::enable_shared_from_this<PageHub> {
   std::shared_ptr<const std::string> state_;
   std::uint64_t number_ = 0;  // of the state
   std::chrono::steady_clock::time_point looked_{};
-  ThreadExecutor requests_{"skein-view-call", 1, SIZE_MAX};  // bounded by kRequests
+  // Both are bounded by kRequests.
+  ThreadExecutor quick_{"skein-view-call", 1, SIZE_MAX};
+  ThreadExecutor waiting_{"skein-view-call", 4, SIZE_MAX};
 };
 
 }  // namespace skein::command::designer

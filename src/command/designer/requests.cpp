@@ -37,7 +37,8 @@ double number_of(const Json& request, const char* name, double most) {
 /// It is one line to the launcher.
 std::string process_of(const Json& request) {
   const std::string process = text_of(request, "process");
-  if (process.find('\n') == std::string::npos) return process;
+  constexpr std::size_t kLongestName = 512;
+  if (process.size() <= kLongestName && process.find('\n') == std::string::npos) return process;
   throw InvalidArgument("no process has such a name");
 }
 
@@ -76,6 +77,11 @@ std::string obey(std::string_view text, const Powers& powers) {
   }
   throw InvalidArgument("'" + printable(what) +
                         "' can not be asked for; restart, stop, kill, hang, move and arrange can");
+}
+
+bool asks_launcher(std::string_view text) {
+  const Json request = Json::parse(text, nullptr, false);
+  return request.is_object() && request.contains("launcher");
 }
 
 }  // namespace skein::command::designer

@@ -22,4 +22,7 @@ struct Powers {
 /// for a request that is none, and what `powers` throw.
 std::string obey(std::string_view request, const Powers& powers);
 
+/// Whether it asks a launcher, which may take some seconds to answer.
+bool asks_launcher(std::string_view request);
+
 }  // namespace skein::command::designer

@@ -1,15 +1,20 @@
 #include "site.hpp"
 
+#include <charconv>
 #include <utility>
 
+#include "skein/error.hpp"
 #include "view/gate.hpp"
 
 namespace skein::command::designer {
 namespace {
 
 constexpr std::string_view kScheme = "http://";
+constexpr std::uint16_t kUsualPort = 80;  // which browsers leave out
 constexpr std::string_view kSocket = "socket";
 constexpr std::string_view kState = "state.json";
+constexpr std::string_view kTimes = "times.json";
+constexpr std::string_view kJson = "application/json";
 
 /// Nothing is loaded from elsewhere, nothing is run that is not a file of the page, nobody frames
 /// it, and nobody learns its address.
@@ -38,7 +43,8 @@ view::Reply words(unsigned status, const std::string& text) {
 
 }  // namespace
 
-Site::Site(std::string token, State state) : token_(std::move(token)), state_(std::move(state)) {
+Site::Site(std::string token, Content content)
+    : token_(std::move(token)), content_(std::move(content)) {
   view::demand_token(token_);
 }
 
@@ -48,7 +54,10 @@ std::string Site::url() const {
 
 bool Site::is_own_name(std::string_view host) const {
   const std::string port = ":" + std::to_string(port_);
-  return host == "127.0.0.1" + port || host == "localhost" + port;
+  const auto is = [&](const std::string& name) {
+    return host == name + port || (port_ == kUsualPort && host == name);
+  };
+  return is("127.0.0.1") || is("localhost");
 }
 
 std::optional<view::Reply> Site::reply(const view::Visit& visit) const {
@@ -62,7 +71,8 @@ std::optional<view::Reply> Site::reply(const view::Visit& visit) const {
   const std::string_view path = visit.target.substr(0, visit.target.find('?'));
   const std::size_t slash = path.find('/', 1);
   const bool whole = slash != std::string_view::npos;
-  if (path.empty() || !view::is_secret(token_, path.substr(1, whole ? slash - 1 : slash))) {
+  if (path.empty() || path.front() != '/' ||
+      !view::is_secret(token_, path.substr(1, whole ? slash - 1 : slash))) {
     return words(401,
                  "Open the URL that `skein designer` has printed, with all that follows the "
                  "port: that is how it knows you.");
@@ -73,19 +83,35 @@ std::optional<view::Reply> Site::reply(const view::Visit& visit) const {
     return moved;
   }
   const std::string_view name = path.substr(slash + 1);
-  if (name != kSocket) return file(name);
+  if (name != kSocket) return file(name, visit.target.substr(path.size()));
+  if (content_.times) return words(404, "A recording says nothing by itself.");
   if (!visit.upgrade) return words(426, "This is a WebSocket.");
   return std::nullopt;
 }
 
-view::Reply Site::file(std::string_view name) const {
-  if (name == kState) {
-    const auto state = state_();
-    if (state) return with_type(200, *state, "application/json");
-    auto later = words(503, "It begins to look now; ask again in two seconds.");
-    later.headers.emplace_back("Retry-After", "2");
-    return later;
+view::Reply Site::state(std::string_view query) const {
+  constexpr std::string_view kAt = "?at=";
+  std::optional<std::uint64_t> at;
+  if (query.starts_with(kAt)) {
+    const std::string_view digits = query.substr(kAt.size());
+    const char* const last = digits.data() + digits.size();
+    const auto [end, failure] = std::from_chars(digits.data(), last, at.emplace());
+    if (end != last || failure != std::errc())
+      return words(400, "A time is a number of nanoseconds since 1970.");
   }
+  try {
+    if (const Json state = content_.state(at)) return with_type(200, *state, kJson);
+  } catch (const Error& error) {
+    return words(500, error.what());
+  }
+  auto later = words(503, "It begins to look now; ask again in two seconds.");
+  later.headers.emplace_back("Retry-After", "2");
+  return later;
+}
+
+view::Reply Site::file(std::string_view name, std::string_view query) const {
+  if (name == kState) return state(query);
+  if (name == kTimes) return with_type(200, content_.times ? *content_.times : "null", kJson);
   const PageFile* const found = find_page_file(name.empty() ? "index.html" : name);
   if (!found) return words(404, "There is no such file.");
   return with_type(200, std::string(found->text), found->type);

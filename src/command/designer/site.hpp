@@ -28,11 +28,18 @@ const PageFile* find_page_file(std::string_view name);
 /// name this address. So the token, the name of the host and the origin must be right. Thread-safe.
 class Site {
  public:
-  /// The state as JSON; null: there is none yet.
-  using State = std::function<std::shared_ptr<const std::string>()>;
+  using Json = std::shared_ptr<const std::string>;
+
+  /// What is shown. Called on the listener's thread.
+  struct Content {
+    /// The state at a time in nanoseconds since 1970, or now; null: there is none yet.
+    std::function<Json(std::optional<std::uint64_t> at)> state;
+    /// Of a recording, its times. Null: what is shown is now.
+    Json times{};
+  };
 
   /// Throws InvalidArgument for a token as view::Gate does.
-  Site(std::string token, State state);
+  Site(std::string token, Content content);
 
   /// After it the site knows its own name; before it turns everybody away.
   void listens_at(std::uint16_t port) { port_ = port; }
@@ -43,10 +50,11 @@ class Site {
 
  private:
   bool is_own_name(std::string_view host) const;
-  view::Reply file(std::string_view name) const;
+  view::Reply file(std::string_view name, std::string_view query) const;
+  view::Reply state(std::string_view query) const;
 
   const std::string token_;
-  const State state_;
+  const Content content_;
   std::atomic<std::uint16_t> port_{0};
 };
 

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <chrono>
+#include <fstream>
+#include <iterator>
 
 #include "brokerless_discovery/broker.hpp"
+#include "core/printable.hpp"
 #include "core/threads/start_thread.hpp"
 #include "core/wall_clock.hpp"
 #include "mission/supervise/mission_claim.hpp"
@@ -14,6 +17,33 @@
 namespace skein::command::designer {
 
 using namespace std::chrono;
+
+namespace {
+
+constexpr std::size_t kLongestTrouble = 1024;
+
+std::uint64_t steady_nanoseconds() {
+  return static_cast<std::uint64_t>(
+      duration_cast<nanoseconds>(steady_clock::now().time_since_epoch()).count());
+}
+
+/// Whether a process of this host is stopped, as by SIGSTOP.
+bool is_stopped(std::uint32_t process) {
+  std::ifstream file("/proc/" + std::to_string(process) + "/stat");
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  const auto name = text.rfind(')');
+  return name != std::string::npos && text.compare(name, 3, ") T") == 0;
+}
+
+std::set<std::uint32_t> stopped_of(const std::vector<launch::MissionStatus>& missions) {
+  std::set<std::uint32_t> stopped;
+  for (const auto& mission : missions)
+    for (const auto& process : mission.processes)
+      if (process.pid != 0 && is_stopped(process.pid)) stopped.insert(process.pid);
+  return stopped;
+}
+
+}  // namespace
 
 LauncherWatch::LauncherWatch(std::uint32_t domain)
     : domain_(domain), thread_(start_thread("skein-launchers", [this] { run(); })) {}
@@ -29,7 +59,9 @@ LauncherWatch::~LauncherWatch() {
 
 std::vector<launch::MissionStatus> LauncherWatch::missions() const {
   std::lock_guard lock(mutex_);
-  return missions_;
+  std::vector<launch::MissionStatus> missions;
+  for (const auto& [launcher, known] : known_) missions.push_back(known.status);
+  return missions;
 }
 
 std::vector<std::string> LauncherWatch::troubles() const {
@@ -41,31 +73,44 @@ void LauncherWatch::run() {
   std::unique_lock lock(mutex_);
   while (!ended_) {
     lock.unlock();
-    std::vector<launch::MissionStatus> missions;
-    std::vector<std::string> troubles;
-    for (const launch::LauncherAnswer& answer : launch::ask_launchers("status")) {
-      if (!answer.failure.empty()) {
-        troubles.push_back(answer.failure);
-        continue;
-      }
-      try {
-        auto status = idl::from_json<launch::MissionStatus>(answer.text);
-        if (status.domain == domain_) missions.push_back(std::move(status));
-      } catch (const Error& error) {
-        troubles.push_back(std::string("a launcher's answer is not understood: ") + error.what());
-      }
-    }
+    const auto answers = launch::ask_launchers("status", domain_);
     lock.lock();
-    missions_ = std::move(missions);
-    troubles_ = std::move(troubles);
+    take(answers);
     ends_.wait_for(lock, 1s, [this] { return ended_; });
   }
+}
+
+void LauncherWatch::take(const std::vector<launch::LauncherAnswer>& answers) {
+  const std::uint64_t now = steady_nanoseconds();
+  troubles_.clear();
+  for (const launch::LauncherAnswer& answer : answers) {
+    const auto known = known_.find(answer.launcher);
+    if (known != known_.end()) known->second.heard = now;
+    try {
+      if (!answer.failure.empty()) throw Unavailable(answer.failure);
+      known_[answer.launcher] = {idl::from_json<launch::MissionStatus>(answer.text), now};
+    } catch (const Error& error) {
+      const std::string name = known == known_.end() ? "" : known->second.status.mission + ": ";
+      troubles_.push_back(printable(name + error.what(), kLongestTrouble));
+    }
+  }
+  for (auto& [launcher, known] : known_) {
+    if (known.heard == now || known.status.launcher == 0) continue;
+    known.status.launcher = 0;
+    if (known.status.ending.empty()) known.status.ending = "its launcher is gone";
+    known.status.processes.clear();
+  }
+  std::erase_if(
+      known_, [&](const auto& each) { return now - each.second.heard > StateMaker::kRemembered; });
 }
 
 void Chronicle::add(const introspection::Decision& decision) {
   std::lock_guard lock(mutex_);
   const std::pair key(decision.entity, decision.service);
-  if (decisions_.size() >= kHeads && !decisions_.contains(key)) return;
+  if (decisions_.size() >= kHeads && !decisions_.contains(key)) {
+    decisions_.erase(std::ranges::min_element(
+        decisions_, {}, [](const auto& each) { return each.second.back().time; }));
+  }
   auto& latest = decisions_[key];
   latest.push_back(decision);
   if (latest.size() > kDecisions) latest.pop_front();
@@ -115,15 +160,16 @@ DomainState DomainWatch::look() {
   Sight sight;
   sight.picture = look_.take(true);
   std::erase_if(sight.picture, is_tool);
-  sight.time = static_cast<std::uint64_t>(
-      duration_cast<nanoseconds>(steady_clock::now().time_since_epoch()).count());
+  sight.time = steady_nanoseconds();
+  sight.wall_time = nanoseconds_since_1970();
   sight.statistics = statistics_.latest();
   sight.missions = launchers_.missions();
+  sight.stopped = stopped_of(sight.missions);
   sight.decisions = chronicle_.latest_decisions();
   DomainState state = maker_.make(sight);
   state.domain = launchers_.domain();
   state.place = entity_.broker().options().place;
-  state.time = nanoseconds_since_1970();
+  state.time = sight.wall_time;
   for (const std::string& trouble : launchers_.troubles()) state.troubles.push_back(trouble);
   for (auto& mission : sight.missions) state.missions.push_back(std::move(mission));
   chronicle_.tell(state);

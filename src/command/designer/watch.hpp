@@ -16,6 +16,7 @@
 
 #include "domain_state.hpp"
 #include "entity/statistics_topic.hpp"
+#include "mission/supervise/mission_claim.hpp"
 #include "rpc/service/introspection_topic.hpp"
 
 namespace skein {
@@ -34,18 +35,25 @@ class LauncherWatch {
   LauncherWatch& operator=(const LauncherWatch&) = delete;
 
   std::uint32_t domain() const noexcept { return domain_; }
-  /// What those of the domain have said last, and why some said nothing.
+  /// What those of the domain have said last, and for a minute those whose launcher has ended.
   std::vector<launch::MissionStatus> missions() const;
+  /// Who said nothing.
   std::vector<std::string> troubles() const;
 
  private:
+  struct Known {
+    launch::MissionStatus status;
+    std::uint64_t heard = 0;  ///< Nanoseconds by a clock that is never set.
+  };
+
   void run();
+  void take(const std::vector<launch::LauncherAnswer>& answers);
 
   const std::uint32_t domain_;
   mutable std::mutex mutex_;
   std::condition_variable ends_;
   bool ended_ = false;
-  std::vector<launch::MissionStatus> missions_;
+  std::map<pid_t, Known> known_;
   std::vector<std::string> troubles_;
   std::thread thread_;  // last: it uses the rest
 };

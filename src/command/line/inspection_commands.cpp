@@ -187,7 +187,7 @@ void add_view(CLI::App& app, int& result) {
 void add_designer(CLI::App& app, int& result) {
   auto& command = add_command(
       app, "designer",
-      "Show a mission on a page, live: entities, CSPs, calls, values, decisions and logs\n\n"
+      "Show a mission on a page, live or recorded\n\n"
       "Entities are boxes with their CSPs; lines between them are calls and topics, with rates, "
       "latencies and transports. With a profile, what it has and nobody has seen is dashed. "
       "Processes of missions that this user flies here can be restarted, and missions be stopped. "
@@ -196,9 +196,20 @@ void add_designer(CLI::App& app, int& result) {
       {{"skein designer --watch --domain 47", "A mission that somebody has started"},
        {"skein designer --watch --profile mission.xml", "The same, over what the profile expects"},
        {"skein designer --watch --profile mission.xml --faults",
-        "A simulated mission, whose processes may be killed"}});
+        "A simulated mission, whose processes may be killed"},
+       {"skein designer --replay flight.mcap", "What was recorded, with a slider for the time"}});
   auto& arguments = arguments_of(command, serve_designer, result);
-  command.add_flag("--watch", arguments.watch, "Watch a mission that somebody starts")->required();
+  auto* watch = command.add_flag("--watch", arguments.watch,
+                                 "Show a mission that somebody starts, while it flies");
+  auto* replay = command
+                     .add_option("--replay", arguments.replay,
+                                 "Show a recording that `skein record` has made; default: none")
+                     ->type_name(kFile)
+                     ->excludes(watch);
+  command.parse_complete_callback([watch, replay] {
+    if (watch->count() + replay->count() == 0)
+      throw CLI::RequiredError("One of --watch and --replay");
+  });
   add_onlooker(command, arguments);
   command.add_option("--port", arguments.port, "TCP port on loopback; 0 takes any that is free")
       ->type_name("PORT")

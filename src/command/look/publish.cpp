@@ -41,15 +41,15 @@ bool await_acknowledgments(DynamicPublisher& publisher, const Interruption& inte
   return true;
 }
 
-struct Outcome {
+struct Published {
   std::uint64_t published = 0;
   bool done = false;  ///< Nothing that was asked for is missing.
 };
 
-Outcome publish_lines(DynamicPublisher& publisher, const PublishArguments& arguments,
-                      const Interruption& interruption) {
+Published publish_lines(DynamicPublisher& publisher, const PublishArguments& arguments,
+                        const Interruption& interruption) {
   ValueLines lines(interruption);
-  Outcome outcome;
+  Published outcome;
   while (arguments.count == 0 || outcome.published < arguments.count) {
     const auto value = lines.next();
     if (!value) return {outcome.published, interruption.signal() == 0};
@@ -60,11 +60,11 @@ Outcome publish_lines(DynamicPublisher& publisher, const PublishArguments& argum
   return {outcome.published, true};
 }
 
-Outcome publish_value(DynamicPublisher& publisher, const PublishArguments& arguments,
-                      const Interruption& interruption) {
+Published publish_value(DynamicPublisher& publisher, const PublishArguments& arguments,
+                        const Interruption& interruption) {
   const bool endless = arguments.count == 0 && arguments.rate > 0;
   const std::uint64_t count = arguments.count > 0 ? arguments.count : 1;
-  Outcome outcome;
+  Published outcome;
   while (!interruption.came()) {
     publisher.publish(arguments.value);
     ++outcome.published;
@@ -97,9 +97,9 @@ int publish(const PublishArguments& arguments) {
   DynamicPublisher publisher(entity, topic.name, topic.type, types_of(inspector, topic, false),
                              topic.writing_qos());
   await_subscribers(publisher, subscribers_of(topic), arguments.wait, interruption);
-  const Outcome outcome = arguments.value == "-"
-                              ? publish_lines(publisher, arguments, interruption)
-                              : publish_value(publisher, arguments, interruption);
+  const Published outcome = arguments.value == "-"
+                                ? publish_lines(publisher, arguments, interruption)
+                                : publish_value(publisher, arguments, interruption);
   const bool acknowledged = await_acknowledgments(publisher, interruption);
   print_published(outcome.published, publisher.subscribers(), acknowledged, arguments.json);
   if (!outcome.done) {

@@ -90,6 +90,7 @@ launch::MissionStatus launcher_says(const std::string& process, const std::strin
   status.launcher = 99;
   launch::ProcessStatus told;
   told.name = process;
+  told.system = "uav-1";
   told.state = state;
   told.reason = reason;
   status.processes.push_back(told);
@@ -189,12 +190,66 @@ TEST_CASE("a launcher says why a process is not there, and how to reach it") {
   CHECK(entity(state, "uav-1/radar").state == "starting");
 }
 
-TEST_CASE("a process that runs and is not seen is missing") {
+TEST_CASE("a process that runs and is not seen is missing, and hangs if it is stopped") {
   Sight sight = mission();
   sight.missions = {launcher_says("radar", "ready")};
+  sight.missions[0].processes[0].pid = 7;
+  StateMaker maker;
+  CHECK(entity(maker.make(sight), "uav-1/radar").state == "missing");
+  sight.stopped = {7};
+  CHECK(entity(maker.make(sight), "uav-1/radar").state == "hangs");
+}
+
+TEST_CASE("a launcher's word is of its own system") {
+  Sight sight = mission();
+  sight.picture.push_back(peer("uav-2/navigator", 4));
+  sight.missions = {launcher_says("navigator", "ready")};
   const DomainState state = StateMaker().make(sight);
-  CHECK(entity(state, "uav-1/radar").state == "missing");
-  CHECK_THAT(entity(state, "uav-1/radar").reason, Contains("nobody is seen of it"));
+  CHECK(entity(state, "uav-1/navigator").launcher == 99);
+  CHECK(entity(state, "uav-2/navigator").launcher == 0);
+}
+
+TEST_CASE("who hangs keeps what it had, and its CSPs stay with it") {
+  StateMaker maker;
+  Sight sight = mission();
+  sight.missions = {launcher_says("navigator", "ready")};
+  sight.missions[0].processes[0].pid = 2;
+  launch::ProcessStatus csp;
+  csp.name = "navigator/AStar";
+  csp.system = "uav-1";
+  csp.state = "ready";
+  sight.missions[0].processes.push_back(csp);
+  maker.make(sight);
+  sight.picture.erase(sight.picture.begin() + 1);  // given up by the others
+  sight.picture[1].services.clear();               // whose owner has left the table
+  sight.statistics.clear();
+  sight.stopped = {2};
+  sight.time += 2 * kSecond;
+  const DomainState state = maker.make(sight);
+  REQUIRE(state.entities.size() == 2);
+  const EntityState& navigator = entity(state, "uav-1/navigator");
+  CHECK(navigator.state == "hangs");
+  REQUIRE(navigator.services.size() == 3);
+  CHECK(navigator.services[1].csp == "AStar");
+  CHECK(navigator.services[1].name == "AE/IPlanner");
+}
+
+TEST_CASE("when a mission has ended, its entities have, and nobody can be asked about them") {
+  StateMaker maker;
+  Sight sight = mission();
+  sight.missions = {launcher_says("navigator", "ready")};
+  maker.make(sight);
+  sight.picture.clear();
+  sight.statistics.clear();
+  sight.missions[0].launcher = 0;
+  sight.time += kSecond;
+  const DomainState state = maker.make(sight);
+  const EntityState& navigator = entity(state, "uav-1/navigator");
+  CHECK(navigator.state == "ended");
+  CHECK_THAT(navigator.reason, Contains("its mission has ended"));
+  CHECK(navigator.process.empty());
+  CHECK(navigator.services[0].state == "ended");
+  CHECK(entity(state, "uav-1/client").state == "gone");
 }
 
 TEST_CASE("the plan is laid over what is there: missing and unplanned entities, CSPs and calls") {
@@ -206,6 +261,9 @@ TEST_CASE("the plan is laid over what is there: missing and unplanned entities, 
   CHECK(entity(state, "uav-1/client").state == "ready");
   const auto& services = entity(state, "uav-1/navigator").services;
   REQUIRE(services.size() == 4);
+  CHECK(services[0].state == "ready");
+  CHECK(services[1].csp == "AStar");
+  CHECK(services[1].state == "unplanned");
   CHECK(services[2].csp == "RRT");
   CHECK(services[2].state == "missing");
   REQUIRE(state.links.size() == 3);
@@ -215,21 +273,35 @@ TEST_CASE("the plan is laid over what is there: missing and unplanned entities, 
   CHECK(state.links[2].state == "missing");
 }
 
-TEST_CASE("a CSP that a Head does not ask any more is quarantined") {
+TEST_CASE("a dependency whose provider is there, and that is not called, is no fault") {
   Sight sight = mission();
+  sight.picture.push_back(peer("uav-1/weather", 4));
+  provide(sight.picture.back(), "AE/IWeather", 1);
+  const DomainState state = StateMaker(plan()).make(sight);
+  CHECK(state.links[2].name == "AE/IWeather");
+  CHECK(state.links[2].state == "unused");
+}
+
+TEST_CASE("a CSP that a Head does not ask any more is quarantined, until it may be tried again") {
+  Sight sight = mission();
+  sight.wall_time = 3 * kSecond;
   introspection::Decision decision;
   decision.entity = "uav-1/navigator";
   decision.service = "AE/IPlanner";
+  decision.time = 2 * kSecond;
   introspection::CandidateReport candidate;
   candidate.csp = "AStar";
   candidate.breaker = introspection::BreakerState::Open;
   candidate.quarantine = 5 * static_cast<std::int64_t>(kSecond);
   decision.candidates.push_back(candidate);
   sight.decisions = {decision};
-  const DomainState state = StateMaker().make(sight);
+  StateMaker maker;
+  const DomainState state = maker.make(sight);
   const ServiceState& csp = entity(state, "uav-1/navigator").services[1];
   CHECK(csp.state == "quarantined");
-  CHECK_THAT(csp.reason, Contains("tried again in 5 s"));
+  CHECK_THAT(csp.reason, Contains("tried again in 4 s"));
+  sight.wall_time = 8 * kSecond;
+  CHECK(entity(maker.make(sight), "uav-1/navigator").services[1].state == "ready");
 }
 
 TEST_CASE("what strangers call themselves is printable") {

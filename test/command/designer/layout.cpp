@@ -84,6 +84,27 @@ TEST_CASE("while a mission starts, all are placed anew, unless the user has move
   CHECK(four[2].x == 600);
 }
 
+TEST_CASE(
+    "once twice as many lines are known, all are placed anew, unless the user has moved one") {
+  int placed = 0;
+  Layout layout([&](const Drawing& drawing) { return ++placed, in_a_row(drawing); });
+  auto five = entities({"a", "b", "c", "d", "e"});
+  const std::vector<Link> few{calls("a", "b"), calls("b", "c")};
+  std::vector<Link> many{few[0], few[1], calls("a", "c"), calls("a", "d"), calls("d", "e")};
+  layout.arrange(five, few);
+  layout.arrange(five, few);
+  CHECK(placed == 1);
+  layout.arrange(five, many);
+  layout.arrange(five, many);
+  CHECK(placed == 2);
+  layout.move("a", {17, 17});
+  for (const char* to : {"c", "d", "e"})
+    for (const char* from : {"b", "e", "d", "c"})
+      if (std::string(from) != to) many.push_back(calls(from, to));
+  layout.arrange(five, many);
+  CHECK(placed == 2);
+}
+
 TEST_CASE("to move a box that is not there does nothing") {
   Layout layout(in_a_row);
   layout.move("nobody", {1, 1});

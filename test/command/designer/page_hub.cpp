@@ -21,8 +21,11 @@ std::shared_ptr<const std::string> text(std::string of) {
 /// A hub whose clients are let in without a token.
 class OpenHub {
  public:
-  explicit OpenHub(const PageHub::Obey& obey = [](std::string_view) { return std::string("done"); })
-      : hub(std::make_shared<PageHub>(obey)),
+  using Obey = std::function<std::string(std::string_view)>;
+
+  explicit OpenHub(const Obey& obey = [](std::string_view) { return std::string("done"); })
+      : hub(std::make_shared<PageHub>(PageHub::Obey{
+            obey, [](auto request) { return request.find("slow") != std::string::npos; }})),
         listener_(
             options(), [](const view::Visit&) { return std::nullopt; },
             [this](view::Connection& connection) { return hub->open(connection); }),
@@ -93,6 +96,21 @@ TEST_CASE("who asks too much at once, or too long, is dropped, and the others st
   open.hub->publish(text("1"));
   CHECK(other.receive()->bytes == "1");
   go_on.set_value();
+}
+
+TEST_CASE("what has to wait for others holds up only what has to wait, too") {
+  std::promise<void> go_on;
+  OpenHub open([ready = go_on.get_future().share()](std::string_view request) {
+    if (request.find("slow") != std::string_view::npos) ready.wait();
+    return std::string("done");
+  });
+  WebClient client(open.url);
+  REQUIRE(client.open());
+  client.send_text(R"({"request": 1, "do": "slow"})");
+  client.send_text(R"({"request": 2, "do": "quick"})");
+  CHECK(client.receive()->bytes == R"({"done":true,"request":2,"text":"done"})");
+  go_on.set_value();
+  CHECK(client.receive()->bytes == R"({"done":true,"request":1,"text":"done"})");
 }
 
 TEST_CASE("a slow client skips states, and holds nobody up") {

@@ -85,6 +85,7 @@ test("before anybody is there, the plan is shown as missing", async () => {
 
 test("the mission starts, and all thirteen are ready in one view", async () => {
   running.mission = launch();
+  running.recorder = run("record", "--domain", "31", "--output", join(folder, "flight.mcap"));
   await until(async () => (await readyBoxes()) === 13);
   await page.locator("#fit").click();
   const canvas = await page.locator("#canvas").boundingBox();
@@ -97,7 +98,7 @@ test("the mission starts, and all thirteen are ready in one view", async () => {
 });
 
 test("lines tell what is called, how often and how long, and topics", async () => {
-  await until(async () => (await page.locator(".label.calls").allTextContents()).some((text) => /^INavigator \d.*\/s.* ms, p99 /.test(text)));
+  await until(async () => (await page.locator(".label.calls").allTextContents()).some((text) => /^INavigator .*(\/s|so far).* ms, p99 /.test(text)));
   assert(await page.locator(".line.values").count() > 10);
   const shared = await page.locator(".line").count();
   await page.locator("#shared").click();
@@ -150,10 +151,9 @@ test("a box that was moved stays where it is, also for who comes later", async (
   assert.equal(await place(), moved);
 });
 
-test("systems fold to one box", async () => {
+test("systems fold to one box, which has the focus then", async () => {
   await page.locator(".frame button").first().click();
   await until(async () => (await page.locator(".box").count()) === 1);
-  await page.locator(".box .head").focus();
   await page.keyboard.press(" ");
   await until(async () => (await readyBoxes()) === 13);
 });
@@ -164,6 +164,9 @@ test("a decision opens with its reasons", async () => {
   const first = page.locator("details", { hasText: "uav-1/nhp" }).first();
   await first.locator("summary").click();
   assert.match(await first.locator("pre").textContent(), /strategy/);
+  await page.getByText(/^\d+ newer; close what is open/).waitFor();
+  assert(await page.locator("details[open] pre").isVisible(), "what is read stays");
+  await page.locator("details[open] summary").click();
 });
 
 test("who cannot see finds nothing missing", async () => {
@@ -216,11 +219,22 @@ test("the server goes and comes back, and the page says so and recovers", async 
   await until(async () => (await readyBoxes()) === 13);
 });
 
+test("a process that hangs is said to, with what it had, and goes on when it is restarted", async () => {
+  await box("uav-1/nhp").locator(".head").click();
+  await page.locator("#panel .acts").first().getByRole("button", { name: "Hang" }).click();
+  await page.locator("#panel").getByRole("button", { name: "Yes" }).click();
+  await page.locator(".words", { hasText: "hangs: its process is stopped" }).waitFor();
+  assert.equal(await box("uav-1/nhp").locator("li.csp").count(), 2);
+  await page.locator("#panel .acts").first().getByRole("button", { name: "Restart" }).click();
+  await page.locator("#panel").getByRole("button", { name: "Yes" }).click();
+  await until(async () => (await readyBoxes()) === 13);
+});
+
 test("the launcher dies, and the page says what is gone; a new one is found", async () => {
   running.mission.kill("SIGKILL");
   await until(async () => (await readyBoxes()) === 0);
   await page.getByRole("tab", { name: "Mission" }).click();
-  await page.getByText("No launcher of this user flies a mission").waitFor();
+  await page.getByText("has ended: its launcher is gone").waitFor();
   running.mission = launch();
   await until(async () => (await readyBoxes()) === 13);
   await page.getByRole("button", { name: "Stop the mission" }).waitFor();
@@ -270,6 +284,46 @@ test("the mission is stopped from the page", async () => {
   await page.getByText("the mission is being ended").waitFor();
   assert.equal(await running.mission.ended, 143);
   await until(async () => (await readyBoxes()) === 0);
+});
+
+test("the recording is replayed on the same page", async () => {
+  running.recorder.kill("SIGINT");
+  assert.equal(await running.recorder.ended, 0);
+  const player = run("designer", "--replay", join(folder, "flight.mcap"), "--no-browser", "--port", "0");
+  await until(() => player.said?.includes("http://"));
+  await page.goto(player.said.match(/http:\S+/)[0]);
+  await page.locator(".box").first().waitFor();
+  const places = () => page.evaluate(() => Object.fromEntries(
+    [...document.querySelectorAll(".box")].map((each) => [each.dataset.id, each.style.transform])));
+  const state = async () => (await page.locator("#panel li", { hasText: "AStar" }).locator("small").allTextContents())[0] ?? "";
+  await page.locator("#time").focus();
+  await page.keyboard.press("End");
+  await until(async () => (await page.locator(".box").count()) === 13);
+  const last = await places();
+  let wasReady = false, wasKilled = false;
+  await box(navigator).locator(".head").click();
+  const count = Number(await page.locator("#time").getAttribute("max"));
+  for (let i = 0; i < count; ++i) {
+    if (i === 0) await page.locator("#time").focus();
+    await page.keyboard.press("ArrowLeft");
+    await page.waitForTimeout(30);
+    if (!(await box(navigator).count())) continue;
+    wasKilled ||= /restarted once/.test(await state());
+    wasReady ||= wasKilled && /process \d+$/.test(await state());
+  }
+  assert(wasKilled && wasReady, "what was killed and replaced is seen again");
+  for (const [name, place] of Object.entries(await places())) assert.equal(place, last[name], `${name} stands elsewhere`);
+  assert.equal(await page.getByRole("button", { name: "Restart" }).count(), 0);
+  await page.locator("#speed").selectOption("100");
+  await page.locator("#play").click();
+  await page.locator("#play", { hasText: "Pause" }).waitFor();
+  await page.locator("#play", { hasText: "Play" }).waitFor();
+  assert.match(await page.locator("#now").textContent(), /after the start/);
+  await page.evaluate(axe);
+  const found = await page.evaluate(() => axe.run(document));
+  assert.deepEqual(found.violations.map((each) => `${each.id}: ${each.nodes[0].html}`), []);
+  player.kill("SIGINT");
+  assert.equal(await player.ended, 0);
 });
 
 test("three hundred boxes move", async (context) => {

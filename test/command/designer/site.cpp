@@ -25,7 +25,7 @@ struct OpenSite {
   }
 
   std::shared_ptr<const std::string> state;
-  Site site{kToken, [this] { return state; }};
+  Site site{kToken, {[this](auto) { return state; }}};
 };
 
 std::string header(const view::Reply& reply, const std::string& name) {
@@ -116,13 +116,33 @@ TEST_CASE("programs read the state, once there is one") {
   CHECK(site.get(kFolder + "state.json").status == 503);
   site.state = std::make_shared<const std::string>("{}");
   CHECK(site.get(kFolder + "state.json").text == "{}");
+  CHECK(site.get(kFolder + "times.json").text == "null");
+}
+
+TEST_CASE("of a recording there is a state for each time, and no WebSocket") {
+  Site site(kToken, {[](std::optional<std::uint64_t> at) {
+                       if (at == 9) throw InvalidArgument("damaged");
+                       return std::make_shared<const std::string>(std::to_string(at.value_or(0)));
+                     },
+                     std::make_shared<const std::string>("{}")});
+  site.listens_at(8080);
+  const auto get = [&](const std::string& name, bool upgrade = false) {
+    return site.reply({"GET", kFolder + name, kName, "", "", upgrade});
+  };
+  CHECK(get("times.json")->text == "{}");
+  CHECK(get("state.json?at=1796000000000000001")->text == "1796000000000000001");
+  CHECK(get("state.json?at=9")->status == 500);
+  CHECK(get("socket", true)->status == 404);
+  const auto wrong = GENERATE("", "x", "-1", "1.5", "99999999999999999999999", "7&x");
+  CAPTURE(wrong);
+  CHECK(get(std::string("state.json?at=") + wrong)->status == 400);
 }
 
 TEST_CASE("before the site knows its port it turns everybody away") {
-  const Site site(kToken, [] { return nullptr; });
+  const Site site(kToken, {[](auto) { return nullptr; }});
   CHECK(site.reply({"GET", kFolder, "127.0.0.1:0", "", "", false})->status == 200);
   CHECK(site.reply({"GET", kFolder, kName, "", "", false})->status == 403);
-  CHECK_THROWS_WITH(Site("short", nullptr), Contains("at least 16"));
+  CHECK_THROWS_WITH(Site("short", {}), Contains("at least 16"));
 }
 
 TEST_CASE("the page asks launchers for what they can do") {

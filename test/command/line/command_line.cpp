@@ -242,8 +242,8 @@ TEST_CASE("what users of other software type leads to a command that there is") 
 TEST_CASE("a word that an option does not know is refused with those that it knows") {
   CHECK_THAT(refusal("completion fishh"),
              Contains("SHELL: 'fishh' is none of bash, zsh, fish (did you mean 'fish'?)"));
-  CHECK_THAT(refusal("graph --format png"),
-             Contains("--format: 'png' is none of dot, mermaid, json"));
+  CHECK_THAT(refusal("graph --format pdf"),
+             Contains("--format: 'pdf' is none of dot, mermaid, json, svg, png"));
   const CommandLineRun line;
   line.each([&](const CLI::App& command, const std::string& words) {
     for (const CLI::Option* option : command.get_options()) {

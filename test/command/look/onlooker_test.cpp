@@ -196,7 +196,7 @@ TEST_CASE("the graph shows who has connected to whom, in each notation") {
   CommandRun short_form({"graph", "--domain", "62", "--json"});
   CHECK(short_form.wait() == 0);
   CHECK(nlohmann::json::parse(short_form.output()).contains("nodes"));
-  CommandRun wrong({"graph", "--format", "svg"});
+  CommandRun wrong({"graph", "--format", "pdf"});
   CHECK(wrong.wait() == 64);
 }
 

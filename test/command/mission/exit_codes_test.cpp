@@ -86,7 +86,7 @@ TEST_CASE("each exit code of the table has its cause") {
                              {"bench", "nothing"},
                              {"echo"},
                              {"echo", "pose", "--count", "0"},
-                             {"graph", "--format", "png"},
+                             {"graph", "--format", "pdf"},
                              {"completion", "tcsh"},
                              {"launch", whole, "--set", "lift=3"},
                              {"launch", whole, "--variable", "lift"},

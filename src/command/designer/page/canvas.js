@@ -1,7 +1,7 @@
 // The drawing: boxes are elements, so that they can be focused and read; lines are SVG below them.
 import { h, set, setText, svg, sync } from "./element.js";
 import { boxesOf, isFound, linesOf } from "./state.js";
-import { digits, latency, rate, short, stateText, tone } from "./words.js";
+import { digits, latency, often, outcome, rate, short, stateText, time, tone } from "./words.js";
 
 /** @typedef {import("./state.js").Box} Box */
 /** @typedef {import("./state.js").Line} Line */
@@ -9,7 +9,7 @@ import { digits, latency, rate, short, stateText, tone } from "./words.js";
 /** @typedef {import("./state.js").View} View */
 /** @typedef {import("./state.js").ServiceState} ServiceState */
 
-const margin = 36;
+const margin = 8;
 const leastZoom = 0.05, mostZoom = 2.5;
 
 export class Canvas {
@@ -23,14 +23,18 @@ export class Canvas {
     this.view = view;
     this.act = act;
     this.pan = { x: 0, y: 0, zoom: 1 };
-    this.fitted = false;
+    /** Whether the user has chosen what is in view. */
+    this.isPlaced = false;
+    this.shown = "";
     this.selected = "";
     /** @type {Box[]} */
     this.boxes = [];
     /** @type {Line[]} */
     this.lines = [];
-    /** Boxes that were moved and whose new place the server has not told yet. @type {Map<string, {x: number, y: number}>} */
+    /** Boxes that were moved, until the server has told their new place. @type {Map<string, {x: number, y: number, until: number}>} */
     this.moved = new Map();
+    /** How long that takes at most, in milliseconds; for ever, where there is no server that keeps places. */
+    this.patience = 4000;
     this.elements = /** @type {Map<string, HTMLElement>} */ (new Map());
     this.paths = /** @type {Map<string, {path: SVGElement, label: SVGElement}>} */ (new Map());
     this.frames = h("div", { class: "frames" });
@@ -47,7 +51,7 @@ export class Canvas {
     root.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
     root.addEventListener("pointerdown", (event) => this.press(event));
     root.addEventListener("keydown", (event) => this.key(event));
-    new ResizeObserver(() => this.fitted || this.fit()).observe(root);
+    new ResizeObserver(() => this.isPlaced || this.fit()).observe(root);
   }
 
   /** @param {DomainState} state @param {string} selected */
@@ -65,15 +69,17 @@ export class Canvas {
     this.drawFrames();
     this.lines.forEach((line) => this.updateLine(line));
     if (!this.layer.querySelector('[tabindex="0"]')) this.roam(this.boxes[0]?.id);
-    if (!this.fitted && this.boxes.length) this.fit();
+    const shown = this.boxes.map((box) => `${box.id} ${box.x} ${box.y}`).join();
+    if (!this.isPlaced && shown !== this.shown) this.fit();
+    this.shown = shown;
   }
 
   /** @param {Box} box */
   keepMoved(box) {
     const place = this.moved.get(box.id);
     if (!place) return;
-    if (place.x === box.x && place.y === box.y) this.moved.delete(box.id);
-    Object.assign(box, place);
+    if (place.until < performance.now()) this.moved.delete(box.id);
+    else Object.assign(box, { x: place.x, y: place.y });
   }
 
   /** @param {Box} box */
@@ -103,8 +109,20 @@ export class Canvas {
     set(head, "aria-expanded", String(!box.folded));
     set(head, "aria-current", box.id === this.selected && "true");
     const services = entity && !box.folded ? entity.services : [];
-    sync(/** @type {Element} */ (element.children[1]), services, (each) => `${each.name}\n${each.csp}`, makeRow,
-      (row, each) => updateRow(row, each, entity ? this.lastChosen(entity.name, each) : ""));
+    const first = services.findIndex((each) => each.csp);
+    /** @type {(ServiceState|null)[]} */
+    const rows = first < 0 ? services : [...services.slice(0, first), null, ...services.slice(first)];
+    sync(/** @type {Element} */ (element.children[1]), rows, (each) => (each ? `${each.name}\n${each.csp}` : "Head"),
+      (each) => (each ? makeRow(each) : h("li", { class: "part" }, h("span", { class: "what" }), h("span", { class: "figures" }))),
+      (row, each) => (each ? updateRow(row, each, entity ? this.lastChosen(entity.name, each) : "") : this.updateHead(row, entity?.name ?? "")));
+  }
+
+  /** The Head with what it has decided last. @param {HTMLElement} row @param {string} entity */
+  updateHead(row, entity) {
+    const last = this.state?.decisions.findLast((each) => each.entity === entity);
+    setText(row.children[0], "Head");
+    setText(row.children[1], last ? `${last.failure ? "failed" : "decided"} in ${time(last.took)}` : "");
+    set(row, "title", last ? `${last.request}${last.failure ? `: ${last.failure}` : ""}` : "It chooses among the CSPs below");
   }
 
   /** How the entity's last decision on the service came out for this CSP. @param {string} entity @param {ServiceState} service */
@@ -131,10 +149,10 @@ export class Canvas {
     sync(this.frames, [...systems], ([system]) => system, ([system]) => h("div", { class: "frame" },
       h("button", { type: "button", title: "Fold the system to one box", onclick: () => this.act.fold(`${system}/`) }, system)),
     (element, [, boxes]) => {
-      const area = bounds(boxes);
-      element.style.transform = `translate(${area.x - 22}px, ${area.y - 40}px)`;
-      element.style.width = `${area.width + 44}px`;
-      element.style.height = `${area.height + 62}px`;
+      const area = framed(boxes);
+      element.style.transform = `translate(${area.x}px, ${area.y}px)`;
+      element.style.width = `${area.width}px`;
+      element.style.height = `${area.height}px`;
     });
   }
 
@@ -180,14 +198,10 @@ export class Canvas {
 
   fit() {
     if (!this.boxes.length || !this.root.clientWidth) return;
-    const area = bounds(this.boxes);
-    const width = area.width + 2 * margin + 20, height = area.height + 2 * margin + 30;
-    const zoom = Math.min(1, this.root.clientWidth / width, this.root.clientHeight / height);
-    this.pan = {
-      zoom, x: (this.root.clientWidth - area.width * zoom) / 2 - area.x * zoom,
-      y: (this.root.clientHeight - (area.height - 24) * zoom) / 2 - area.y * zoom,
-    };
-    this.fitted = true;
+    const area = framed(this.boxes);
+    const { clientWidth: width, clientHeight: height } = this.root;
+    const zoom = Math.min(1, (width - 2 * margin) / area.width, (height - 2 * margin) / area.height);
+    this.pan = { zoom, x: (width - area.width * zoom) / 2 - area.x * zoom, y: (height - area.height * zoom) / 2 - area.y * zoom };
     this.applyPan();
   }
 
@@ -200,6 +214,7 @@ export class Canvas {
   zoom(factor, at) {
     const zoom = Math.min(mostZoom, Math.max(leastZoom, this.pan.zoom * factor));
     const grown = zoom / this.pan.zoom;
+    this.isPlaced = true;
     this.pan = { zoom, x: at.x - (at.x - this.pan.x) * grown, y: at.y - (at.y - this.pan.y) * grown };
     this.applyPan();
   }
@@ -216,7 +231,8 @@ export class Canvas {
     const target = /** @type {Element} */ (event.target);
     if (event.button !== 0 || target.closest(".frame button")) return;
     const id = /** @type {HTMLElement|null} */ (target.closest(".box"))?.dataset.id;
-    const box = this.boxes.find((each) => each.id === id);
+    const current = () => this.boxes.find((each) => each.id === id); // an update makes new ones
+    const box = current();
     const begin = { x: event.clientX, y: event.clientY, pan: { ...this.pan }, box: box && { x: box.x, y: box.y } };
     let far = false;
     const drag = (/** @type {PointerEvent} */ now) => {
@@ -224,9 +240,10 @@ export class Canvas {
       far ||= Math.hypot(dx, dy) > 4;
       if (!far) return;
       if (box && begin.box) {
-        this.moveTo(box, begin.box.x + dx / this.pan.zoom, begin.box.y + dy / this.pan.zoom);
+        this.moveTo(current() ?? box, begin.box.x + dx / this.pan.zoom, begin.box.y + dy / this.pan.zoom);
       } else {
         this.root.classList.add("moving");
+        this.isPlaced = true;
         this.pan = { ...begin.pan, x: begin.pan.x + dx, y: begin.pan.y + dy };
         this.applyPan();
       }
@@ -236,7 +253,7 @@ export class Canvas {
       window.removeEventListener("pointermove", drag);
       window.removeEventListener("pointerup", drop);
       window.removeEventListener("pointercancel", drop);
-      if (box && far) this.tellMoved(box);
+      if (box && far) this.tellMoved(current() ?? box);
       if (far) ignoreNextClick();
       if (!box && !far && !target.closest(".line")) this.act.select("");
     };
@@ -254,7 +271,8 @@ export class Canvas {
       member.x += shift.x;
       member.y += shift.y;
     }
-    this.moved.set(box.id, { x: box.x, y: box.y });
+    this.isPlaced = true;
+    this.moved.set(box.id, { x: box.x, y: box.y, until: performance.now() + this.patience });
     const element = this.elements.get(box.id);
     if (element) this.placeBox(element, box);
     for (const line of this.lines) if (line.from === box || line.to === box) this.placeLine(line);
@@ -292,9 +310,8 @@ export class Canvas {
     } else if (event.key === "+" || event.key === "-") {
       this.zoom(event.key === "+" ? 1.2 : 1 / 1.2, { x: this.root.clientWidth / 2, y: this.root.clientHeight / 2 });
     } else if (event.key === "0") {
+      this.isPlaced = false;
       this.fit();
-    } else if (event.key === "Escape") {
-      this.act.select("");
     } else {
       return;
     }
@@ -352,12 +369,14 @@ function makeRow(service) {
 /** @param {HTMLElement} row @param {ServiceState} service @param {string} chosen */
 function updateRow(row, service, chosen) {
   set(row, "class", `${service.csp ? "csp" : "service"} ${tone(service.state)} ${service.state}${chosen ? " chosen" : ""}`);
-  setText(row.children[0], chosen ? (chosen === "Accepted" || chosen === "Preselected" ? "✓" : "✗") : "");
+  const isGood = chosen === "Accepted" || chosen === "Preselected";
+  setText(row.children[0], chosen ? (isGood ? "✓" : "✗") : "");
   setText(row.children[1], service.csp || short(service.name));
   const busy = service.calls.length && service.calls[0] > 0 ? rate(service.calls) : "";
   setText(row.children[2], service.state === "ready" ? busy : service.state);
+  set(row.children[0], "class", `mark${chosen && !isGood ? " failed" : ""}`);
   set(row, "title", [service.csp ? `CSP ${service.csp} of ${service.name}` : `service ${service.name}`, stateText(service),
-    latency(service), chosen && `last decision: ${chosen.toLowerCase()}`].filter(Boolean).join("\n"));
+    latency(service), chosen && `in the last decision: ${outcome(chosen)}`].filter(Boolean).join("\n"));
 }
 
 /** In two lines. @param {Line} line @returns {string[]} */
@@ -366,15 +385,15 @@ function labelOf(line) {
   if (line.state !== "ready") return [`${short(first.name)}: ${line.state}`];
   const name = line.kind === "Calls" ? short(first.name) : first.name;
   const more = line.links.length > 1 ? ` +${line.links.length - 1}` : "";
-  return [`${name}${more} ${digits(line.rate)}/s`, ...(line.kind === "Calls" && first.p50 ? [latency(first)] : [])];
+  return [`${name}${more} ${often({ rate: [line.rate], total: line.total })}`, ...(line.kind === "Calls" && first.p50 ? [latency(first)] : [])];
 }
 
-/** @param {{x: number, y: number, width: number, height: number}[]} boxes */
-function bounds(boxes) {
-  const x = Math.min(...boxes.map((box) => box.x)), y = Math.min(...boxes.map((box) => box.y));
+/** The area of boxes with the frame around them. @param {{x: number, y: number, width: number, height: number}[]} boxes */
+function framed(boxes) {
+  const x = Math.min(...boxes.map((box) => box.x)) - 22, y = Math.min(...boxes.map((box) => box.y)) - 40;
   return {
-    x, y, width: Math.max(...boxes.map((box) => box.x + box.width)) - x,
-    height: Math.max(...boxes.map((box) => box.y + box.height)) - y,
+    x, y, width: Math.max(...boxes.map((box) => box.x + box.width)) + 22 - x,
+    height: Math.max(...boxes.map((box) => box.y + box.height)) + 22 - y,
   };
 }
 

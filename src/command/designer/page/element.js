@@ -55,6 +55,9 @@ export function setText(element, text) {
 export function sync(parent, items, key, create, update) {
   const before = childrenOf.get(parent) ?? new Map();
   const now = new Map();
+  const wanted = new Set(items.map(key));
+  // First of all, so that those that stay need not be moved, which would take the focus from them.
+  for (const [name, element] of before) if (!wanted.has(name)) element.remove();
   let place = parent.firstElementChild;
   for (const item of items) {
     const name = key(item);
@@ -62,10 +65,9 @@ export function sync(parent, items, key, create, update) {
     const element = before.get(name) ?? create(item);
     now.set(name, element);
     if (update) update(element, item);
-    if (element === place) place = place.nextElementSibling;
+    if (element === place) place = element.nextElementSibling;
     else parent.insertBefore(element, place);
   }
-  for (const [name, element] of before) if (!now.has(name)) element.remove();
   childrenOf.set(parent, now);
 }
 

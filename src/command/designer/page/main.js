@@ -2,7 +2,8 @@
 import { set, setText } from "./element.js";
 import { Canvas } from "./canvas.js";
 import { Panel } from "./panel.js";
-import { sharedTopics } from "./state.js";
+import { replay } from "./replay.js";
+import { isFound, sharedTopics } from "./state.js";
 import { showTables } from "./table.js";
 import { clock, counted } from "./words.js";
 
@@ -58,16 +59,31 @@ function connect() {
   };
   socket.onclose = () => {
     for (const request of [...requests.keys()]) end(request, false, "the connection to skein designer has ended");
+    void lookWhy();
     setTimeout(connect, retry);
     retry = Math.min(2 * retry, longestRetry);
     tellConnection();
   };
 }
 
+/** Whether skein designer is there, and does not know this page's URL. */
+let isStranger = false;
+
+async function lookWhy() {
+  const answer = await fetch("times.json").catch(() => null);
+  isStranger = answer?.status === 401;
+  tellConnection();
+}
+
+/** What is wrong with a recording. */
+let damage = "";
+let isReplay = false;
+
 /** Says so if what is shown is old. */
 function tellConnection() {
-  const text = socket?.readyState === WebSocket.OPEN || socket?.readyState === WebSocket.CONNECTING && !state
+  const text = isReplay ? damage : socket?.readyState === WebSocket.OPEN || socket?.readyState === WebSocket.CONNECTING && !state
     ? state && Date.now() - heard > oldAfter ? `No news since ${clock(heard * 1e6)}.` : ""
+    : isStranger ? "skein designer was started anew, with another URL: open that one."
     : `There is no connection to skein designer${state ? `; this is of ${clock(state.time)}` : ""}. Trying again…`;
   const all = [text, ...(state?.troubles ?? [])].filter(Boolean).join(" · ");
   setText($("bar"), all);
@@ -76,7 +92,7 @@ function tellConnection() {
 }
 
 function drawSoon() {
-  if (!drawn) requestAnimationFrame(draw);
+  if (!drawn) document.hidden ? setTimeout(draw) : requestAnimationFrame(draw); // of a hidden page the title is seen
   drawn = true;
 }
 
@@ -93,15 +109,23 @@ function draw() {
 /** @param {import("./state.js").DomainState} state */
 function summarize(state) {
   const wrong = state.entities.filter((entity) => entity.state !== "ready");
-  const names = state.missions.map((mission) => mission.mission).join(", ");
+  const names = state.missions.map((mission) => `${mission.mission}${mission.launcher ? "" : " (ended)"}`).join(", ");
   document.title = `${wrong.length ? `(${wrong.length}) ` : ""}${names || state.place} – Skein`;
   setText($("title"), names || "Skein");
   const degraded = state.missions.some((mission) => mission.degraded) ? "degraded, " : "";
   setText($("summary"), `${state.place}: ${degraded}${state.entities.length === 1 ? "1 entity" : `${state.entities.length} entities`}` +
-    `${wrong.length ? `, ${wrong.length} not ready` : ""}${state.plan ? `, planned by ${state.plan}` : ""}`);
+    `${wrong.length ? `, ${wrong.length} not ready` : ""}${state.plan ? `, planned by ${state.plan.slice(state.plan.lastIndexOf("/") + 1)}` : ""}${foundText()}`);
+  set($("summary"), "title", state.plan);
+  set($("empty"), "hidden", state.entities.length > 0);
   const shared = sharedTopics(state);
   set($("shared"), "hidden", shared.size === 0);
   setText($("shared"), `+ ${counted(shared.size, "shared topic")}`);
+}
+
+/** What the search has found, in words. */
+function foundText() {
+  if (!view.search.trim() || asTable) return "";
+  return `; ${canvas.boxes.filter((box) => state && isFound(box, state, view.search)).length} with '${view.search.trim()}'`;
 }
 
 /** @param {string} id */
@@ -115,7 +139,9 @@ function select(id) {
 function fold(id) {
   if (view.folded.has(id)) view.folded.delete(id);
   else view.folded.add(id);
-  drawSoon();
+  draw();
+  const isSystem = id.endsWith("/");
+  canvas.focus(isSystem && !view.folded.has(id) ? state?.entities.find((each) => `${each.system}/` === id)?.name ?? "" : id);
 }
 
 /** @param {string} id @param {() => boolean} flip */
@@ -128,7 +154,7 @@ function toggle(id, flip) {
 
 const panel = new Panel($("panel"), ask, select);
 const canvas = new Canvas($("canvas"), view, {
-  select, fold, move: (entity, x, y) => ask("move", { entity, x, y }).catch(() => undefined),
+  select, fold, move: (entity, x, y) => ask("move", { entity, x, y }).catch(() => undefined), // a recording keeps nothing
 });
 toggle("values", () => (view.values = !view.values));
 toggle("shared", () => (view.shared = !view.shared));
@@ -138,16 +164,45 @@ toggle("as-table", () => {
   set($("graph"), "hidden", asTable);
   return asTable;
 });
-$("fit").onclick = () => canvas.fit();
-$("arrange").onclick = () => ask("arrange", {}).then(() => { canvas.fitted = false; }, () => undefined);
+$("fit").onclick = () => {
+  canvas.isPlaced = false;
+  canvas.fit();
+};
+$("arrange").onclick = () => ask("arrange", {}).then(() => {
+  canvas.moved.clear();
+  canvas.isPlaced = false;
+}, () => undefined);
 const search = /** @type {HTMLInputElement} */ ($("search"));
 search.oninput = () => {
   view.search = search.value;
   drawSoon();
 };
-search.onkeydown = (event) => {
-  const found = canvas.layer.querySelector(".found .head");
-  if (event.key === "Enter" && found) canvas.focus(/** @type {HTMLElement} */ (found.parentElement).dataset.id ?? "");
+search.onkeydown = (/** @type {KeyboardEvent} */ event) => {
+  if (event.key !== "Enter" || !state) return;
+  const rank = (/** @type {import("./state.js").Box} */ box) => (state ? isFound(box, state, view.search) : 0);
+  const best = [...canvas.boxes].sort((a, b) => rank(b) - rank(a))[0];
+  if (best && rank(best)) canvas.focus(best.id);
 };
+document.addEventListener("keydown", (event) => {
+  if (event.key === "Escape") select("");
+});
 setInterval(tellConnection, 1000);
-connect();
+
+/** @param {import("./state.js").DomainState} recorded */
+function showRecorded(recorded) {
+  state = recorded;
+  drawSoon();
+}
+
+const recording = await (await fetch("times.json")).json();
+isReplay = recording !== null;
+document.body.classList.toggle("replay", isReplay);
+if (isReplay) {
+  canvas.patience = Infinity;
+  replay(recording.times, showRecorded, (text) => {
+    damage = text;
+    tellConnection();
+  });
+} else {
+  connect();
+}

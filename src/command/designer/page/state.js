@@ -1,12 +1,12 @@
 // What the server tells (designer_state.idl), and what of it is drawn: boxes, and the lines between them.
 
-/** @typedef {{name: string, csp: string, state: string, reason: string, process: string, pid: number, calls: number[],
- *   failed: number[], waiting: number, running: number, p50: number, p99: number}} ServiceState */
+/** @typedef {{name: string, csp: string, state: string, reason: string, process: string, pid: number, cpu: number[], total: number,
+ *   calls: number[], failed: number[], waiting: number, running: number, p50: number, p99: number}} ServiceState */
 /** @typedef {{name: string, system: string, state: string, reason: string, process: string, launcher: number, pid: number,
  *   host: string, program: string, vendor: string, version: string, cpu: number[], memory: number, threads: number,
  *   services: ServiceState[], x: number, y: number, width: number, height: number}} EntityState */
 /** @typedef {{source: string, target: string, kind: "Calls"|"Values", name: string, state: string, transport: string,
- *   reason: string, rate: number[], p50: number, p99: number}} Link */
+ *   reason: string, total: number, rate: number[], p50: number, p99: number}} Link */
 /** @typedef {{entity: string, number: number, time: number, request: string, service: string, took: number, failure: string,
  *   attempts: {csp: string, outcome: string}[], explanation: string}} DecisionNote */
 /** @typedef {{time: number, entity: string, pid: number, level: string, place: string, text: string}} LogNote */
@@ -25,7 +25,7 @@
  *   height: number, state: string, reason: string}} Box */
 
 /** All links of one kind from one box to another.
- * @typedef {{id: string, from: Box, to: Box, kind: "Calls"|"Values", links: Link[], state: string, rate: number}} Line */
+ * @typedef {{id: string, from: Box, to: Box, kind: "Calls"|"Values", links: Link[], state: string, rate: number, total: number}} Line */
 
 const headHeight = 50;
 /** A topic that more links carry is drawn on demand: everybody has one to everybody. */
@@ -55,7 +55,7 @@ export function boxesOf(state, view) {
       const folded = view.folded.has(entity.name);
       boxes.push({
         id: entity.name, entity, members: [entity], folded, state: entity.state, reason: entity.reason, x: entity.x, y: entity.y,
-        width: entity.width, height: folded ? headHeight : headHeight + 20 * entity.services.length,
+        width: entity.width, height: folded ? headHeight : entity.height,
       });
     }
   }
@@ -96,20 +96,22 @@ export function linesOf(state, view, boxes, selected) {
     const wanted = from.id === selected || to.id === selected;
     if (link.kind === "Values" && !wanted && (!view.values || shared.has(link.name))) continue;
     const id = `${from.id}\n${to.id}\n${link.kind}`;
-    const line = lines.get(id) ?? { id, from, to, kind: link.kind, links: [], state: "ready", rate: 0 };
+    const line = lines.get(id) ?? { id, from, to, kind: link.kind, links: [], state: "ready", rate: 0, total: 0 };
     line.links.push(link);
     line.rate += link.rate[0] ?? 0;
+    line.total += link.total;
     if (link.state !== "ready") line.state = link.state;
     lines.set(id, line);
   }
   return [...lines.values()];
 }
 
-/** Whether a box has what is looked for. @param {Box} box @param {DomainState} state @param {string} search @returns {boolean} */
+/** Whether a box has what is looked for: 2 by its name, 1 by what it has. @param {Box} box @param {DomainState} state @param {string} search @returns {number} */
 export function isFound(box, state, search) {
   const wanted = search.trim().toLowerCase();
-  if (!wanted) return false;
+  if (!wanted) return 0;
   const has = (/** @type {string} */ text) => text.toLowerCase().includes(wanted);
-  return box.members.some((entity) => has(entity.name) || entity.services.some((each) => has(each.name) || has(each.csp)) ||
-    state.links.some((link) => (link.source === entity.name || link.target === entity.name) && has(link.name)));
+  if (box.members.some((entity) => has(entity.name))) return 2;
+  return Number(box.members.some((entity) => entity.services.some((each) => has(each.name) || has(each.csp)) ||
+    state.links.some((link) => (link.source === entity.name || link.target === entity.name) && has(link.name))));
 }

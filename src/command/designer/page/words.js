@@ -20,6 +20,12 @@ export function rate(rate) {
   return rate.length ? `${digits(rate[0])}/s` : "–";
 }
 
+/** How often, and where that is less than can be seen in a second, how many at all. @param {{rate?: number[], calls?: number[], total: number}} of */
+export function often(of) {
+  const now = of.rate ?? of.calls ?? [];
+  return now.length && now[0] > 0 ? rate(now) : of.total ? `${of.total} so far` : "none yet";
+}
+
 /** @param {{p50: number, p99: number}} of @returns {string} */
 export function latency(of) {
   return of.p50 ? `${time(of.p50)}, p99 ${time(of.p99)}` : "";
@@ -45,7 +51,7 @@ export function short(name) {
 export function tone(state) {
   if (state === "ready") return "good";
   if (["starting", "waiting", "idle", "interrupted", "terminated", "unplanned"].includes(state)) return "busy";
-  return state === "ended" ? "off" : "bad";
+  return state === "ended" || state === "unused" ? "off" : "bad";
 }
 
 /** @param {{state: string, reason: string}} of @returns {string} */
