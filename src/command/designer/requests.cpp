@@ -36,7 +36,7 @@ double number_of(const Json& request, const char* name, double most) {
 
 /// It is one line to the launcher.
 std::string process_of(const Json& request) {
-  const std::string process = text_of(request, "process");
+  std::string process = text_of(request, "process");
   constexpr std::size_t kLongestName = 512;
   if (process.size() <= kLongestName && process.find('\n') == std::string::npos) return process;
   throw InvalidArgument("no process has such a name");
