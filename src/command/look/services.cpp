@@ -40,7 +40,8 @@ Clients clients_in(std::vector<Inspected>&& answers) {
   Clients clients;
   for (auto& [participant, answer] : answers) {
     for (auto& connection : answer.connections) {
-      clients.emplace(connection.provider, Client{answer.entity, std::move(connection)});
+      const Guid provider{connection.provider};
+      clients.emplace(provider, Client{answer.entity, std::move(connection)});
     }
   }
   return clients;

@@ -139,7 +139,7 @@ Counts export_csv(const recording::Reader& reader, const ExportArguments& argume
   for (auto& [topic, table] : tables) {
     Output output(folder / table.file);
     table.rows.write_head(output.stream());
-    recording::for_each_value(reader, {topic}, [&](const RecordedValue& value) {
+    recording::for_each_value(reader, {topic}, [&, &table = table](const RecordedValue& value) {
       table.rows.write_row(output.stream(), value.log_time, value.json);
       return true;
     });
