@@ -508,4 +508,16 @@ LogNote note_of(const introspection::LogLine& line) {
           printable(line.text, kLongestText)};
 }
 
+LogNote note_of(const launch::MissionLine& line, const std::string& mission) {
+  std::string entity = line.process.empty() ? mission : line.system + "/" + line.process;
+  const auto csp = entity.find('/', line.system.size() + 1);
+  if (!line.process.empty() && csp != std::string::npos) entity[csp] = '.';
+  return {line.time,
+          printable(entity),
+          0,
+          "info",
+          line.printed ? "printed" : "launcher",
+          printable(line.text, kLongestText)};
+}
+
 }  // namespace skein::command::designer

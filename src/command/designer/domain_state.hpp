@@ -59,5 +59,6 @@ class StateMaker {
 /// What the page shows of a decision, and of a line of a log.
 DecisionNote note_of(const introspection::Decision& decision);
 LogNote note_of(const introspection::LogLine& line);
+LogNote note_of(const launch::MissionLine& line, const std::string& mission);
 
 }  // namespace skein::command::designer

@@ -74,8 +74,10 @@ void LauncherWatch::run() {
   while (!ended_) {
     lock.unlock();
     const auto answers = launch::ask_launchers("status", domain_);
+    const auto lines = launch::ask_launchers("lines", domain_);
     lock.lock();
     take(answers);
+    take_lines(lines);
     ends_.wait_for(lock, 1s, [this] { return ended_; });
   }
 }
@@ -88,7 +90,9 @@ void LauncherWatch::take(const std::vector<launch::LauncherAnswer>& answers) {
     if (known != known_.end()) known->second.heard = now;
     try {
       if (!answer.failure.empty()) throw Unavailable(answer.failure);
-      known_[answer.launcher] = {idl::from_json<launch::MissionStatus>(answer.text), now};
+      Known& heard = known_[answer.launcher];
+      heard.heard = now;
+      heard.status = idl::from_json<launch::MissionStatus>(answer.text);
     } catch (const Error& error) {
       const std::string name = known == known_.end() ? "" : known->second.status.mission + ": ";
       troubles_.push_back(printable(name + error.what(), kLongestTrouble));
@@ -102,6 +106,29 @@ void LauncherWatch::take(const std::vector<launch::LauncherAnswer>& answers) {
   }
   std::erase_if(
       known_, [&](const auto& each) { return now - each.second.heard > StateMaker::kRemembered; });
+}
+
+/// Those that do not answer are told of by their status.
+void LauncherWatch::take_lines(const std::vector<launch::LauncherAnswer>& answers) {
+  for (const launch::LauncherAnswer& answer : answers) {
+    const auto known = known_.find(answer.launcher);
+    if (known == known_.end() || !answer.failure.empty()) continue;
+    try {
+      const auto told = idl::from_json<launch::MissionLines>(answer.text);
+      known->second.lines.assign(told.lines.begin(), told.lines.end());
+    } catch (const Error&) {  // of another version
+      known->second.lines.clear();
+    }
+  }
+}
+
+std::vector<LogNote> LauncherWatch::lines() const {
+  std::lock_guard lock(mutex_);
+  std::vector<LogNote> notes;
+  for (const auto& [launcher, known] : known_)
+    for (const launch::MissionLine& line : known.lines)
+      notes.push_back(note_of(line, known.status.mission));
+  return notes;
 }
 
 void Chronicle::add(const introspection::Decision& decision) {
@@ -134,12 +161,19 @@ std::vector<introspection::Decision> Chronicle::latest_decisions() const {
   return latest;
 }
 
-void Chronicle::tell(DomainState& state) const {
+void Chronicle::tell(DomainState& state, std::vector<LogNote> printed) const {
   std::lock_guard lock(mutex_);
   for (const auto& [head, decisions] : decisions_) {
     for (const auto& decision : decisions) state.decisions.push_back(note_of(decision));
   }
+  // What the library logs is printed, too, behind its level and place.
+  std::erase_if(printed, [&](const LogNote& note) {
+    return std::ranges::any_of(lines_, [&](const introspection::LogLine& line) {
+      return !line.text.empty() && note.text.ends_with(": " + line.text);
+    });
+  });
   for (const auto& line : lines_) state.log.push_back(note_of(line));
+  for (LogNote& note : printed) state.log.push_back(std::move(note));
   std::ranges::stable_sort(state.decisions, {}, &DecisionNote::time);
   std::ranges::stable_sort(state.log, {}, &LogNote::time);
 }
@@ -172,7 +206,7 @@ DomainState DomainWatch::look() {
   state.time = sight.wall_time;
   for (const std::string& trouble : launchers_.troubles()) state.troubles.push_back(trouble);
   for (auto& mission : sight.missions) state.missions.push_back(std::move(mission));
-  chronicle_.tell(state);
+  chronicle_.tell(state, launchers_.lines());
   return state;
 }
 

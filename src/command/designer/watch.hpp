@@ -39,15 +39,19 @@ class LauncherWatch {
   std::vector<launch::MissionStatus> missions() const;
   /// Who said nothing.
   std::vector<std::string> troubles() const;
+  /// What their processes have printed last, and what became of them.
+  std::vector<LogNote> lines() const;
 
  private:
   struct Known {
     launch::MissionStatus status;
     std::uint64_t heard = 0;  ///< Nanoseconds by a clock that is never set.
+    std::vector<launch::MissionLine> lines{};
   };
 
   void run();
   void take(const std::vector<launch::LauncherAnswer>& answers);
+  void take_lines(const std::vector<launch::LauncherAnswer>& answers);
 
   const std::uint32_t domain_;
   mutable std::mutex mutex_;
@@ -65,7 +69,8 @@ class Chronicle {
   void add(const introspection::LogLine& line);
 
   std::vector<introspection::Decision> latest_decisions() const;  ///< One of each Head and service.
-  void tell(DomainState& state) const;
+  /// With what launchers have told, in order of time.
+  void tell(DomainState& state, std::vector<LogNote> printed) const;
 
  private:
   static constexpr std::size_t kDecisions = 3;  // of each Head and service

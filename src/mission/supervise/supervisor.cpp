@@ -13,10 +13,12 @@
 #include "core/printable.hpp"
 #include "core/suggestion.hpp"
 #include "core/system/abstract_socket.hpp"
+#include "core/wall_clock.hpp"
 #include "mission/process/request_server.hpp"
 #include "mission/process/wake_up.hpp"
 #include "mission/supervise/mission_claim.hpp"
 #include "mission/supervise/mission_state.hpp"
+#include "recent_lines.hpp"
 #include "skein/detail/type_support.hpp"
 #include "skein/mission_status.idl.hpp"
 #include "supervised_child.hpp"
@@ -77,7 +79,7 @@ class MissionRun {
  public:
   MissionRun(const LaunchPlan& plan, const SupervisorOptions& options, StopRequest& stop)
       : plan_(plan),
-        options_(options),
+        options_(noted(options)),
         stop_(stop),
         state_(plan),
         requests_(options.requests, [this](std::string_view request) { return answer(request); }) {
@@ -101,6 +103,25 @@ class MissionRun {
 
  private:
   using Steps = MissionState::Steps;
+
+  SupervisorOptions noted(SupervisorOptions options) {
+    options.on_output = [this, tell = std::move(options.on_output)](std::string_view child,
+                                                                    std::string_view line) {
+      note(std::string(child), true, line);
+      tell(child, line);
+    };
+    options.on_event = [this, tell = std::move(options.on_event)](const ChildEvent& event) {
+      note(event.child, false, event.text);
+      tell(event);
+    };
+    return options;
+  }
+
+  void note(const std::string& process, bool printed, std::string_view text) {
+    const auto child = std::ranges::find(plan_.children, process, &ChildPlan::name);
+    recent_.add(nanoseconds_since_1970(), process,
+                child == plan_.children.end() ? "" : child->system, printed, text);
+  }
 
   void report(const std::string& text) const { options_.on_event({"", ChildState::Idle, text}); }
 
@@ -251,6 +272,7 @@ class MissionRun {
     const std::string_view verb = request.substr(0, request.find(' '));
     const std::string_view rest = request.substr(std::min(verb.size() + 1, request.size()));
     if (request == "status") return accepted(status());
+    if (request == "lines") return accepted(recent_.json());
     if (request == "stop") {
       stop_.raise();
       return accepted("the mission is being ended");
@@ -338,7 +360,8 @@ class MissionRun {
   static constexpr std::chrono::milliseconds kSameSignal{300};
 
   const LaunchPlan& plan_;
-  const SupervisorOptions& options_;
+  RecentLines recent_;
+  const SupervisorOptions options_;  // as they were given, and each line is noted
   StopRequest& stop_;
   SignalReader signals_;
   const ChildKeeping child_keeping_;

@@ -34,8 +34,8 @@ struct SupervisorOptions {
       [](std::string_view, std::string_view) {};
   std::function<void(const ChildEvent& event)> on_event = [](const ChildEvent&) {};
   /// A listening socket for requests (see MissionClaim): `status`, answered by a MissionStatus as
-  /// JSON; `restart PROCESS`; `stop`; and, to try what the mission bears, `kill PROCESS` and
-  /// `hang PROCESS`. Negative: there are none.
+  /// JSON; `lines`, by MissionLines; `restart PROCESS`; `stop`; and, to try what the mission bears,
+  /// `kill PROCESS` and `hang PROCESS`. Negative: there are none.
   int requests = -1;
 };
 

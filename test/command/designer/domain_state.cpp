@@ -304,6 +304,20 @@ TEST_CASE("a CSP that a Head does not ask any more is quarantined, until it may 
   CHECK(entity(maker.make(sight), "uav-1/navigator").services[1].state == "ready");
 }
 
+TEST_CASE("a launcher's lines are of the entity that its process is") {
+  launch::MissionLine line;
+  line.system = "uav-1";
+  line.process = "navigator/AStar";
+  line.text = "hello";
+  line.printed = true;
+  CHECK(note_of(line, "m").entity == "uav-1/navigator.AStar");
+  CHECK(note_of(line, "m").place == "printed");
+  line.process = "navigator";
+  CHECK(note_of(line, "m").entity == "uav-1/navigator");
+  line.process = "";
+  CHECK(note_of(line, "m").entity == "m");
+}
+
 TEST_CASE("what strangers call themselves is printable") {
   Sight sight;
   sight.picture = {peer("uav-1/\x1b[2J", 1)};

@@ -207,6 +207,9 @@ test("a CSP is killed by keyboard, and its replacement is seen", async () => {
   await page.getByText("navigator/AStar is killed").waitFor();
   await row.getByText("was restarted once, last ended by signal 9 (Killed)").waitFor();
   await until(async () => ![0, pid].includes((await pids()).AStar));
+  await page.getByRole("tab", { name: "Log" }).click();
+  await page.locator(".log li", { hasText: "ended by signal 9 (Killed)" }).first().waitFor();
+  await page.getByRole("tab", { name: "Details" }).click();
 });
 
 test("the server goes and comes back, and the page says so and recovers", async () => {
@@ -284,6 +287,28 @@ test("the mission is stopped from the page", async () => {
   await page.getByText("the mission is being ended").waitFor();
   assert.equal(await running.mission.ended, 143);
   await until(async () => (await readyBoxes()) === 0);
+});
+
+test("two fingers zoom, and one moves the drawing", async () => {
+  const hand = await browser.newContext({ hasTouch: true, viewport: { width: 390, height: 700 } });
+  const telephone = await hand.newPage();
+  await telephone.goto(`http://127.0.0.1:${port}/${token}/`);
+  await telephone.locator(".box").first().waitFor();
+  const drawing = () => telephone.locator(".world").evaluate((element) => new DOMMatrix(getComputedStyle(element).transform).toJSON());
+  const touch = await hand.newCDPSession(telephone);
+  const fingers = (type, ...points) => touch.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
+  const before = await drawing();
+  await fingers("touchStart", [190, 300], [200, 300]);
+  await fingers("touchMove", [150, 300], [240, 300]);
+  await fingers("touchMove", [130, 300], [260, 300]);
+  await fingers("touchEnd");
+  const after = await drawing();
+  assert(after.a > 1.5 * before.a, `from ${before.a} to ${after.a}`);
+  await fingers("touchStart", [190, 330]);
+  await fingers("touchMove", [190, 380]);
+  await fingers("touchEnd");
+  assert.equal(Math.round((await drawing()).f - after.f), 50);
+  await hand.close();
 });
 
 test("the recording is replayed on the same page", async () => {

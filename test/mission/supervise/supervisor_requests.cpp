@@ -18,6 +18,7 @@
 #include "core/system/abstract_socket.hpp"
 #include "mission/process/request_server.hpp"
 #include "mission/supervise/mission_claim.hpp"
+#include "mission/supervise/recent_lines.hpp"
 #include "shell_mission.hpp"
 #include "skein/detail/type_support.hpp"
 #include "skein/error.hpp"
@@ -196,6 +197,31 @@ TEST_CASE(
   CHECK(test::eventually([&] { return server.serve(), !asked.empty(); }));
   server.serve();
   CHECK(asked == std::vector<std::string>{"x"});
+}
+
+TEST_CASE("A launcher tells what its processes have printed, and what became of them") {
+  RunningMission mission({shell_child("a", "echo hello; " + kWait)});
+  REQUIRE(mission.becomes(0, "ready"));
+  const auto has = [&](const std::string& text, bool printed) {
+    const auto told = idl::from_json<MissionLines>(mission.ask("lines"));
+    return std::ranges::any_of(told.lines, [&](const MissionLine& line) {
+      return line.process == "a" && line.printed == printed && line.time > 0 &&
+             line.text.find(text) != std::string::npos;
+    });
+  };
+  CHECK(test::eventually([&] { return has("hello", true); }));
+  CHECK(has("ready after", false));
+}
+
+TEST_CASE("Of a mission's lines the latest are kept, and of a long one the beginning") {
+  RecentLines recent;
+  for (std::size_t i = 0; i < RecentLines::kKept + 7; ++i)
+    recent.add(i, "a", "uav-1", true, std::string(i % 2 == 0 ? 1 : 100'000, 'x') + "\x1b");
+  const auto told = idl::from_json<MissionLines>(recent.json());
+  REQUIRE(told.lines.size() == RecentLines::kKept);
+  CHECK(told.lines.front().number == 8);
+  CHECK(told.lines.back().system == "uav-1");
+  CHECK(recent.json().size() < 300'000);
 }
 
 TEST_CASE("What a mission must bear is done to its processes on request") {

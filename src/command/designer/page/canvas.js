@@ -31,6 +31,11 @@ export class Canvas {
     this.boxes = [];
     /** @type {Line[]} */
     this.lines = [];
+    /** Where labels stand. @type {{x: number, y: number}[]} */
+    this.labelled = [];
+    /** Fingers, by pointer, and how far two of them are apart. @type {Map<number, {x: number, y: number}>} */
+    this.fingers = new Map();
+    this.spread = 0;
     /** Boxes that were moved, until the server has told their new place. @type {Map<string, {x: number, y: number, until: number}>} */
     this.moved = new Map();
     /** How long that takes at most, in milliseconds; for ever, where there is no server that keeps places. */
@@ -67,6 +72,7 @@ export class Canvas {
     keepOnly(this.elements, this.boxes);
     keepOnly(this.paths, this.lines);
     this.drawFrames();
+    this.labelled = [];
     this.lines.forEach((line) => this.updateLine(line));
     if (!this.layer.querySelector('[tabindex="0"]')) this.roam(this.boxes[0]?.id);
     const shown = this.boxes.map((box) => `${box.id} ${box.x} ${box.y}`).join();
@@ -189,7 +195,10 @@ export class Canvas {
     const { path, points } = curve(line.from, line.to);
     set(made.path.children[0], "d", path);
     set(made.path.children[1], "d", path);
-    const middle = points.find((point) => this.boxes.every((box) => isFarFrom(box, point))) ?? points[0];
+    const isFree = (/** @type {{x: number, y: number}} */ point) => this.boxes.every((box) => isFarFrom(box, point)) &&
+      this.labelled.every((other) => Math.abs(other.x - point.x) > 120 || Math.abs(other.y - point.y) > 26);
+    const middle = points.find(isFree) ?? points[0];
+    if (line.kind === "Calls" || made.label.classList.contains("near")) this.labelled.push(middle);
     Array.from(made.label.children).forEach((part, i) => {
       set(part, "x", middle.x);
       set(part, "y", middle.y + 14 * i);
@@ -226,16 +235,30 @@ export class Canvas {
     this.zoom(Math.exp(-event.deltaY / 500), { x: event.clientX - corner.x, y: event.clientY - corner.y });
   }
 
+  /** Two fingers zoom. Whether there are two. @param {PointerEvent} event */
+  pinch(event) {
+    if (this.fingers.has(event.pointerId)) this.fingers.set(event.pointerId, { x: event.clientX, y: event.clientY });
+    if (this.fingers.size !== 2) return false;
+    const [one, other] = this.fingers.values(), corner = this.root.getBoundingClientRect();
+    const spread = Math.hypot(one.x - other.x, one.y - other.y);
+    if (this.spread && spread) this.zoom(spread / this.spread, { x: (one.x + other.x) / 2 - corner.x, y: (one.y + other.y) / 2 - corner.y });
+    this.spread = spread;
+    return true;
+  }
+
   /** Drags a box, or the whole drawing. @param {PointerEvent} event */
   press(event) {
     const target = /** @type {Element} */ (event.target);
     if (event.button !== 0 || target.closest(".frame button")) return;
+    this.fingers.set(event.pointerId, { x: event.clientX, y: event.clientY });
+    if (this.fingers.size > 1) return; // the first one's listeners see to both
     const id = /** @type {HTMLElement|null} */ (target.closest(".box"))?.dataset.id;
     const current = () => this.boxes.find((each) => each.id === id); // an update makes new ones
     const box = current();
     const begin = { x: event.clientX, y: event.clientY, pan: { ...this.pan }, box: box && { x: box.x, y: box.y } };
     let far = false;
     const drag = (/** @type {PointerEvent} */ now) => {
+      if (this.pinch(now) || this.spread) return;
       const dx = now.clientX - begin.x, dy = now.clientY - begin.y;
       far ||= Math.hypot(dx, dy) > 4;
       if (!far) return;
@@ -248,7 +271,10 @@ export class Canvas {
         this.applyPan();
       }
     };
-    const drop = () => {
+    const drop = (/** @type {PointerEvent} */ now) => {
+      this.fingers.delete(now.pointerId);
+      if (this.fingers.size) return;
+      this.spread = 0;
       this.root.classList.remove("moving");
       window.removeEventListener("pointermove", drag);
       window.removeEventListener("pointerup", drop);
