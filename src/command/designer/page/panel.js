@@ -11,7 +11,7 @@ import { clock, counted, digits, latency, often, outcome, rate, short, size, sta
 /** @typedef {(what: string, members: Record<string, any>) => Promise<string>} Ask */
 
 const tabs = ["Details", "Mission", "Decisions", "Log"];
-const mostDecisions = 300;
+const mostDecisions = 100;
 const levels = ["debug", "info", "warning", "error"];
 
 export class Panel {
