@@ -7,7 +7,7 @@
 
 namespace skein::view {
 
-/// What the first HTTP request of a connection says. It has no body.
+/// The first HTTP request of a connection. It has no body.
 struct Visit {
   std::string_view method;
   std::string_view target;  ///< `/?token=...`
@@ -17,7 +17,7 @@ struct Visit {
   bool upgrade = false;        ///< It asks for a WebSocket.
 };
 
-/// What a visitor gets in place of a WebSocket: a file, or why he may not come in.
+/// The answer in place of a WebSocket: a file, or the reason of a refusal.
 struct Reply {
   unsigned status;   ///< Of HTTP.
   std::string text;  ///< For people, if nothing else.

@@ -1,36 +1,30 @@
 #include "browser.hpp"
 
-#include <spawn.h>
+#include <fcntl.h>
 #include <stdlib.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <array>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
+
+#include "command/print/start_program.hpp"
+#include "core/system/file_descriptor.hpp"
+#include "skein/error.hpp"
 
 namespace skein::command::designer {
 namespace {
 
-/// `sh` ends at once, so that nobody has to wait for what it starts.
-void open(const std::string& file) {
-  posix_spawn_file_actions_t actions;
-  posix_spawnattr_t attributes;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawnattr_init(&attributes);
-  posix_spawn_file_actions_addclosefrom_np(&actions, STDERR_FILENO + 1);
-  sigset_t none;
-  sigemptyset(&none);
-  posix_spawnattr_setsigmask(&attributes, &none);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
-  std::array<std::string, 5> words{"sh", "-c", R"(xdg-open "$1" >/dev/null 2>&1 &)", "sh", file};
-  std::array<char*, 6> arguments{};
-  for (std::size_t i = 0; i < words.size(); ++i) arguments[i] = words[i].data();
-  pid_t process = 0;
-  if (::posix_spawnp(&process, "sh", &actions, &attributes, arguments.data(), environ) == 0)
-    ::waitpid(process, nullptr, 0);
-  posix_spawnattr_destroy(&attributes);
-  posix_spawn_file_actions_destroy(&actions);
+/// `sh` ends at once, so that this process need not wait for the browser.
+void open_in_browser(const std::string& file) {
+  const FileDescriptor nothing(::open("/dev/null", O_RDWR | O_CLOEXEC));
+  const std::array<std::string, 5> words{"sh", "-c", R"(xdg-open "$1" &)", "sh", file};
+  try {
+    ::waitpid(start_program(words, nothing.get(), nothing.get()), nullptr, 0);
+  } catch (const Unavailable& error) {
+    std::fprintf(stderr, "skein: %s\n", error.what());
+  }
 }
 
 }  // namespace
@@ -45,7 +39,7 @@ Browser::Browser(const std::string& url) {
   std::ofstream(file)
       << "<!doctype html><title>Skein</title><meta http-equiv=\"refresh\" content=\"0; url=" << url
       << "\">\n";
-  open(file);
+  open_in_browser(file);
 }
 
 Browser::~Browser() {

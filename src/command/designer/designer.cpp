@@ -38,7 +38,7 @@ std::optional<Plan> plan_in(const DesignerArguments& arguments) {
                                                profile::parse_variables(arguments.variables)));
 }
 
-/// What the looking thread and those of requests share.
+/// Shared by the thread that looks and those that serve requests.
 class Shown {
  public:
   void arrange(DomainState& state) {
@@ -81,7 +81,7 @@ view::WebSocketOptions socket_options(const DesignerArguments& arguments) {
   return options;
 }
 
-/// The listener and where it is.
+/// The listener with its address.
 class OpenSite {
  public:
   OpenSite(const DesignerArguments& arguments, Site::Content content,
@@ -121,14 +121,14 @@ int watch_domain(const DesignerArguments& arguments) {
   const std::uint32_t domain = arguments.watched_domain();
   Entity entity = join(arguments, "designer");
   Shown shown;
-  const Powers powers{[&](int launcher, const std::string& request) {
-                        shown.demand_launcher(launcher);
-                        return launch::ask_launcher(launcher, request);
-                      },
-                      [&](const std::string& name, Place to) { shown.move(name, to); },
-                      [&] { shown.forget(); }, arguments.faults};
+  const Actions actions{[&](int launcher, const std::string& request) {
+                          shown.demand_launcher(launcher);
+                          return launch::ask_launcher(launcher, request);
+                        },
+                        [&](const std::string& name, Place to) { shown.move(name, to); },
+                        [&] { shown.forget(); }, arguments.faults};
   const auto hub = std::make_shared<PageHub>(PageHub::Obey{
-      [&](std::string_view request) { return obey(request, powers); }, asks_launcher});
+      [&](std::string_view request) { return obey(request, actions); }, asks_launcher});
   const OpenSite site(arguments, {[&](auto) { return hub->look(); }}, hub);
   std::optional<DomainWatch> watch;  // none while nobody looks
   do {

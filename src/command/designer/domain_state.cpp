@@ -138,13 +138,13 @@ void add_statistics(const std::vector<introspection::ServiceStatistics>& statist
 }
 
 /// Calls of one entity to a provider over one transport, or values that it publishes on a topic.
-struct Traffic {
+struct CountedLink {
   Link link;
   std::uint64_t count = 0;
 };
-using Traffics = std::map<std::string, Traffic>;
+using CountedLinks = std::map<std::string, CountedLink>;
 
-void add_calls(const DomainPicture& picture, const Draft& draft, Traffics& traffics) {
+void add_calls(const DomainPicture& picture, const Draft& draft, CountedLinks& counted) {
   for (const PeerPicture& peer : picture) {
     const std::string& from = draft.homes.at(peer.participant);
     for (const inspection::Connection& connection : peer.connections) {
@@ -152,10 +152,10 @@ void add_calls(const DomainPicture& picture, const Draft& draft, Traffics& traff
       if (place == draft.providers.end() || place->second.entity == from) continue;
       const EntityState& target = draft.entities.at(place->second.entity);
       const ServiceState& service = target.services[place->second.index];
-      Traffic& traffic = traffics[from + "\n" + target.name + "\n" + connection.service + "\n" +
-                                  connection.transport];
-      traffic.count += connection.calls;
-      traffic.link = {printable(from),
+      CountedLink& carried = counted[from + "\n" + target.name + "\n" + connection.service + "\n" +
+                                     connection.transport];
+      carried.count += connection.calls;
+      carried.link = {printable(from),
                       target.name,
                       LinkKind::Calls,
                       service.name,
@@ -181,7 +181,7 @@ std::vector<TopicKey> keys_of(const inspection::TopicEndpoint& endpoint, const s
   return keys;
 }
 
-void add_values(const DomainPicture& picture, const Draft& draft, Traffics& traffics) {
+void add_values(const DomainPicture& picture, const Draft& draft, CountedLinks& counted) {
   std::map<TopicKey, std::set<std::string>> readers;
   const auto for_each = [&](bool publishers, const auto& visit) {
     for (const PeerPicture& peer : picture) {
@@ -198,9 +198,9 @@ void add_values(const DomainPicture& picture, const Draft& draft, Traffics& traf
   for_each(true, [&](const std::string& home, const auto& endpoint, const TopicKey& key) {
     for (const std::string& reader : readers[key]) {
       if (reader == home) continue;
-      Traffic& traffic = traffics[home + "\n" + reader + "\n" + endpoint.name + "\nvalues"];
-      traffic.count += endpoint.samples;
-      traffic.link = {printable(home),
+      CountedLink& carried = counted[home + "\n" + reader + "\n" + endpoint.name + "\nvalues"];
+      carried.count += endpoint.samples;
+      carried.link = {printable(home),
                       printable(reader),
                       LinkKind::Values,
                       printable(endpoint.name),
@@ -219,7 +219,7 @@ std::string times(std::uint32_t count) {
   return count == 1 ? "once" : std::to_string(count) + " times";
 }
 
-/// What a launcher says of a process which is there, or is to be.
+/// Adds the launcher's state of a process.
 void add_launchers_word(const launch::ProcessStatus& process, bool is_stopped, std::string& state,
                         std::string& reason) {
   const bool seen = state == "ready" || state == "degraded" || state == "silent";
@@ -250,7 +250,7 @@ ServiceState& csp_named(const std::string& csp, EntityState& entity) {
   return entity.services.back();
 }
 
-void add_missions(const Sight& sight, Entities& entities) {
+void add_missions(const Observation& sight, Entities& entities) {
   for (const auto& mission : sight.missions) {
     if (mission.launcher == 0) continue;  // it has ended
     for (const auto& process : mission.processes) {
@@ -306,7 +306,7 @@ void add_planned_services(const Plan::Entity& wanted, EntityState& entity) {
   }
 }
 
-/// What the plan has and nobody has seen, and what is there without being planned.
+/// Marks entities and services that are missing, and those that are not planned.
 void add_plan(const Plan& plan, Entities& entities) {
   std::set<std::string> planned;
   for (const Plan::Entity& wanted : plan.entities) {
@@ -385,7 +385,7 @@ void add_planned_links(const Plan& plan, const Entities& entities, std::vector<L
   }
 }
 
-void add_quarantines(const Sight& sight, Entities& entities) {
+void add_quarantines(const Observation& sight, Entities& entities) {
   for (const auto& decision : sight.decisions) {
     const auto age = static_cast<std::int64_t>(sight.wall_time - decision.time);
     const auto entity = entities.find(decision.entity);
@@ -405,22 +405,22 @@ void add_quarantines(const Sight& sight, Entities& entities) {
 
 }  // namespace
 
-DomainState StateMaker::make(const Sight& sight) {
+DomainState StateMaker::make(const Observation& sight) {
   Draft draft = draft_of(sight.picture, rates_.peers(sight.picture), names(sight));
   add_statistics(sight.statistics, rates_.services(sight.statistics, sight.time), draft);
-  Traffics traffics;
-  add_calls(sight.picture, draft, traffics);
-  add_values(sight.picture, draft, traffics);
+  CountedLinks counted;
+  add_calls(sight.picture, draft, counted);
+  add_values(sight.picture, draft, counted);
   DomainState state;
   const double seconds =
       time_before_ == 0 ? 0 : static_cast<double>(sight.time - time_before_) / kSecond;
   std::map<std::string, std::uint64_t> counts;
-  for (auto& [key, traffic] : traffics) {
-    counts[key] = traffic.link.total = traffic.count;
+  for (auto& [key, carried] : counted) {
+    counts[key] = carried.link.total = carried.count;
     const auto before = counts_before_.find(key);
-    if (seconds > 0 && before != counts_before_.end() && before->second <= traffic.count)
-      traffic.link.rate.push_back(static_cast<double>(traffic.count - before->second) / seconds);
-    state.links.push_back(std::move(traffic.link));
+    if (seconds > 0 && before != counts_before_.end() && before->second <= carried.count)
+      carried.link.rate.push_back(static_cast<double>(carried.count - before->second) / seconds);
+    state.links.push_back(std::move(carried.link));
   }
   counts_before_ = std::move(counts);
   time_before_ = sight.time;
@@ -441,7 +441,7 @@ DomainState StateMaker::make(const Sight& sight) {
 }
 
 /// Of entities that are or may be there.
-std::set<std::string> StateMaker::names(const Sight& sight) const {
+std::set<std::string> StateMaker::names(const Observation& sight) const {
   std::set<std::string> names;
   for (const PeerPicture& peer : sight.picture) names.insert(peer.name);
   for (const auto& [name, known] : known_) names.insert(name);
@@ -453,7 +453,7 @@ std::set<std::string> StateMaker::names(const Sight& sight) const {
   return names;
 }
 
-void StateMaker::remember(const Sight& sight, Entities& entities) {
+void StateMaker::remember(const Observation& sight, Entities& entities) {
   const std::uint64_t now = sight.time;
   for (auto& [name, entity] : entities) {
     Known& known = known_[name];
@@ -461,7 +461,7 @@ void StateMaker::remember(const Sight& sight, Entities& entities) {
       entity.state = "missing";
       entity.reason = "CSPs of it are there, and nobody else";
     }
-    // One that hangs is soon forgotten by others, and what it has is what one wants to know then.
+    // The others soon forget an entity that hangs, but its services should still be shown.
     if (entity.pid == 0 && known.seen > 0) keep_services(known.state, entity);
     known.silent_looks = entity.state == "silent" ? known.silent_looks + 1 : 0;
     if (known.silent_looks > 0 && known.silent_looks < kSilentLooks)

@@ -16,8 +16,8 @@
 
 namespace skein::command::designer {
 
-/// What was seen of a domain at one moment.
-struct Sight {
+/// A domain at one moment.
+struct Observation {
   std::uint64_t time = 0;  ///< Nanoseconds by a clock that is never set.
   DomainPicture picture;   ///< Whole.
   std::vector<introspection::ServiceStatistics> statistics;
@@ -28,7 +28,7 @@ struct Sight {
 };
 
 /// Makes the entities and links of a state from one sight after the other: rates come of two, and
-/// who has gone is remembered for a while. Knows no network. Not thread-safe.
+/// entities that have gone are remembered for a while. Knows no network. Not thread-safe.
 class StateMaker {
  public:
   /// For how long an entity is shown that nobody expects, after it has gone, in nanoseconds.
@@ -37,7 +37,7 @@ class StateMaker {
   explicit StateMaker(std::optional<Plan> plan = {}) : plan_(std::move(plan)) {}
 
   /// Entities by name, without their places, and links.
-  DomainState make(const Sight& sight);
+  DomainState make(const Observation& sight);
 
  private:
   struct Known {
@@ -46,17 +46,17 @@ class StateMaker {
     int silent_looks = 0;
   };
 
-  std::set<std::string> names(const Sight& sight) const;
-  void remember(const Sight& sight, std::map<std::string, EntityState>& entities);
+  std::set<std::string> names(const Observation& sight) const;
+  void remember(const Observation& sight, std::map<std::string, EntityState>& entities);
 
   const std::optional<Plan> plan_;
   top::Rates rates_;
   std::map<std::string, Known> known_;                  // by the entity's name
-  std::map<std::string, std::uint64_t> counts_before_;  // of what links carry
+  std::map<std::string, std::uint64_t> counts_before_;  // calls and values of links
   std::uint64_t time_before_ = 0;                       // of the last sight; 0: there was none
 };
 
-/// What the page shows of a decision, and of a line of a log.
+/// The short form for the page.
 DecisionNote note_of(const introspection::Decision& decision);
 LogNote note_of(const introspection::LogLine& line);
 LogNote note_of(const launch::MissionLine& line, const std::string& mission);

@@ -7,7 +7,7 @@
 #include <set>
 #include <sstream>
 
-#include "command/look/graphviz.hpp"
+#include "command/print/graphviz.hpp"
 #include "skein/error.hpp"
 
 namespace skein::command::designer {
@@ -21,7 +21,7 @@ constexpr double kRowHeight = 20;
 constexpr double kGap = 28;
 constexpr double kBetweenSystems = 90;
 constexpr std::size_t kMostLines = 150;
-/// A topic that many read says little of who belongs to whom.
+/// A topic with more readers does not show which entities belong together.
 constexpr std::size_t kFewReaders = 2;
 
 std::string node(std::size_t box) { return "n" + std::to_string(box); }
@@ -118,8 +118,8 @@ Arrangement by_dot(const Drawing& drawing, const Boxes& boxes, const Lines& line
   return made;
 }
 
-/// One system. Where everybody speaks to everybody, no arrangement tells anything, and Graphviz
-/// would need minutes for it.
+/// One system. If almost all entities speak to each other, an arrangement shows nothing, and
+/// Graphviz needs minutes for it.
 Arrangement arranged(const Drawing& drawing, const Boxes& system) {
   const std::set<std::size_t> own(system.begin(), system.end());
   Lines lines;
@@ -225,7 +225,8 @@ std::vector<Place> Layout::placed(const Drawing& drawing) {
   }
 }
 
-/// A newcomer stands to its neighbours as was proposed, and then further down where another stands.
+/// Places each new box beside its neighbours as proposed, and moves it down while it covers
+/// another.
 void Layout::settle(const Drawing& drawing, const std::vector<Place>& proposed) {
   const std::map<std::string, Place> before = places_;
   const auto shift_of = [&](std::size_t box) {

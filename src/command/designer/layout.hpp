@@ -33,13 +33,13 @@ struct Drawing {
 std::vector<Place> places_by_graphviz(const Drawing& drawing);
 
 /// Where the boxes of a page stand. A box keeps its place as long as it is shown, and newcomers
-/// come near those that they speak to; only where a third are newcomers, or twice as many lines are
+/// come near those that they speak to; only if a third are newcomers, or twice as many lines are
 /// known, and nobody has moved anything, all are placed anew. Not thread-safe.
 class Layout {
  public:
   using Placer = std::function<std::vector<Place>(const Drawing& drawing)>;
 
-  /// Where `place` throws Unavailable, boxes stand in rows, and failure() tells why.
+  /// If `place` throws Unavailable, boxes stand in rows, and failure() tells why.
   explicit Layout(Placer place = places_by_graphviz) : place_(std::move(place)) {}
 
   /// Gives all entities size and place.

@@ -6,7 +6,7 @@
 namespace skein::command::designer {
 namespace {
 
-/// For who asks again and again without being a client.
+/// After a program has read the state without being a client.
 constexpr std::chrono::seconds kInterest{10};
 
 using Json = nlohmann::json;

@@ -14,8 +14,8 @@
 
 namespace skein::command::designer {
 
-/// What is sent to the clients of the page: to each the newest state, as fast as it takes it, and
-/// the answers to its requests. Thread-safe; no function waits for a client.
+/// Sends each client of the page the newest state, as fast as the client takes it, and the answers
+/// to its requests. Thread-safe; no function waits for a client.
 class PageHub : public std::enable_shared_from_this<PageHub> {
  public:
   /// Carries out a request and returns the answer; what it throws is the answer, too. Called on

@@ -9,7 +9,7 @@ struct MissionProfile;
 
 namespace skein::command::designer {
 
-/// What a mission expects on its domain.
+/// The entities that a mission expects on its domain.
 struct Plan {
   struct Service {
     std::string name;     ///< Canonical name of the interface.

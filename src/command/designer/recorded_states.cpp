@@ -10,7 +10,7 @@
 namespace skein::command::designer {
 namespace {
 
-/// So many of a recording's states, evenly spread, tell who is there at all.
+/// So many states of a recording, evenly spread, are read to find all of its entities.
 constexpr std::size_t kSampled = 30;
 
 std::string json_in(const recording::Message& message) {
@@ -36,7 +36,7 @@ RecordedStates::RecordedStates(const std::string& file) : reader_(file) {
   place_all();
 }
 
-/// So that a box stands where it stands, whichever time is looked at first.
+/// Places all entities of the recording, so that no box moves when the time changes.
 void RecordedStates::place_all() {
   std::map<std::string, EntityState> entities;
   std::vector<Link> links;

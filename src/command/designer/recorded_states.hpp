@@ -24,10 +24,10 @@ class RecordedStates {
   /// they are too large for the numbers of a page.
   const std::shared_ptr<const std::string>& times() const noexcept { return times_text_; }
 
-  /// What was seen last at that time, with the places of its boxes; the first state before it.
+  /// The last state at or before that time, with places; the first state, if there is none.
   std::shared_ptr<const std::string> at(std::uint64_t time) const;
 
-  /// What is wrong with the file, in words.
+  /// Damage of the file, in words.
   const std::vector<std::string>& problems() const { return reader_.problems(); }
 
  private:

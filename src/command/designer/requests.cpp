@@ -42,37 +42,37 @@ std::string process_of(const Json& request) {
   throw InvalidArgument("no process has such a name");
 }
 
-std::string ask_about(const Json& request, const std::string& what, const Powers& powers) {
+std::string ask_about(const Json& request, const std::string& what, const Actions& actions) {
   constexpr double kMostProcesses = 1 << 22;
-  return powers.ask_launcher(static_cast<int>(number_of(request, "launcher", kMostProcesses)),
-                             what);
+  return actions.ask_launcher(static_cast<int>(number_of(request, "launcher", kMostProcesses)),
+                              what);
 }
 
-std::string do_fault(const Json& request, const std::string& fault, const Powers& powers) {
-  if (!powers.faults) {
+std::string do_fault(const Json& request, const std::string& fault, const Actions& actions) {
+  if (!actions.faults) {
     throw InvalidArgument(
         "only with --faults are processes killed and made to hang: it is for "
         "missions in which nothing real can break");
   }
-  return ask_about(request, fault + " " + process_of(request), powers);
+  return ask_about(request, fault + " " + process_of(request), actions);
 }
 
 }  // namespace
 
-std::string obey(std::string_view text, const Powers& powers) {
+std::string obey(std::string_view text, const Actions& actions) {
   const Json request = Json::parse(text, nullptr, false);
   if (!request.is_object()) throw InvalidArgument("a request is a JSON object");
   const std::string what = text_of(request, "do");
-  if (what == "stop") return ask_about(request, what, powers);
-  if (what == "restart") return ask_about(request, what + " " + process_of(request), powers);
-  if (what == "kill" || what == "hang") return do_fault(request, what, powers);
+  if (what == "stop") return ask_about(request, what, actions);
+  if (what == "restart") return ask_about(request, what + " " + process_of(request), actions);
+  if (what == "kill" || what == "hang") return do_fault(request, what, actions);
   if (what == "move") {
-    powers.move(text_of(request, "entity"),
-                {number_of(request, "x", kFarthest), number_of(request, "y", kFarthest)});
+    actions.move(text_of(request, "entity"),
+                 {number_of(request, "x", kFarthest), number_of(request, "y", kFarthest)});
     return "moved";
   }
   if (what == "arrange") {
-    powers.arrange();
+    actions.arrange();
     return "arranged";
   }
   throw InvalidArgument("'" + printable(what) +

@@ -8,8 +8,8 @@
 
 namespace skein::command::designer {
 
-/// What the page can ask for.
-struct Powers {
+/// The actions that the page can request.
+struct Actions {
   std::function<std::string(int launcher, const std::string& request)> ask_launcher;
   std::function<void(const std::string& entity, Place to)> move;
   std::function<void()> arrange;
@@ -19,8 +19,8 @@ struct Powers {
 /// Carries out a request, a JSON object: `{"request": 7, "do": "restart", "launcher": 4711,
 /// "process": "navigator"}`, `stop` with a launcher, `kill` and `hang` as `restart`, `move` with
 /// `entity`, `x` and `y`, and `arrange`. Returns what was done, in words. Throws InvalidArgument
-/// for a request that is none, and what `powers` throw.
-std::string obey(std::string_view request, const Powers& powers);
+/// for a request that is none, and what `actions` throw.
+std::string obey(std::string_view request, const Actions& actions);
 
 /// Whether it asks a launcher, which may take some seconds to answer.
 bool asks_launcher(std::string_view request);

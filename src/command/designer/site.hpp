@@ -22,7 +22,7 @@ struct PageFile {
 /// Null: there is none.
 const PageFile* find_page_file(std::string_view name);
 
-/// What is at which address: all under `/TOKEN/`, so that a page that loads its parts by relative
+/// The addresses of the page: all under `/TOKEN/`, so that a page that loads its parts by relative
 /// addresses needs neither cookies nor another way to prove itself. Any page that a user opens can
 /// reach his loopback, and so can other users of the machine; a name server can give a stranger's
 /// name this address. So the token, the name of the host and the origin must be right. Thread-safe.
@@ -30,11 +30,11 @@ class Site {
  public:
   using Json = std::shared_ptr<const std::string>;
 
-  /// What is shown. Called on the listener's thread.
+  /// The content. Called on the listener's thread.
   struct Content {
     /// The state at a time in nanoseconds since 1970, or now; null: there is none yet.
     std::function<Json(std::optional<std::uint64_t> at)> state;
-    /// Of a recording, its times. Null: what is shown is now.
+    /// Of a recording, its times. Null: the state is live.
     Json times{};
   };
 
@@ -45,7 +45,7 @@ class Site {
   void listens_at(std::uint16_t port) { port_ = port; }
   std::string url() const;
 
-  /// What a visitor gets; nothing: a WebSocket.
+  /// The reply; nothing if the visitor gets a WebSocket.
   std::optional<view::Reply> reply(const view::Visit& visit) const;
 
  private:

@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <chrono>
-#include <fstream>
-#include <iterator>
 
 #include "brokerless_discovery/broker.hpp"
+#include "command/doctor/reading.hpp"
 #include "core/printable.hpp"
 #include "core/threads/start_thread.hpp"
 #include "core/wall_clock.hpp"
@@ -27,19 +26,12 @@ std::uint64_t steady_nanoseconds() {
       duration_cast<nanoseconds>(steady_clock::now().time_since_epoch()).count());
 }
 
-/// Whether a process of this host is stopped, as by SIGSTOP.
-bool is_stopped(std::uint32_t process) {
-  std::ifstream file("/proc/" + std::to_string(process) + "/stat");
-  const std::string text(std::istreambuf_iterator<char>(file), {});
-  const auto name = text.rfind(')');
-  return name != std::string::npos && text.compare(name, 3, ") T") == 0;
-}
-
 std::set<std::uint32_t> stopped_of(const std::vector<launch::MissionStatus>& missions) {
   std::set<std::uint32_t> stopped;
   for (const auto& mission : missions)
     for (const auto& process : mission.processes)
-      if (process.pid != 0 && is_stopped(process.pid)) stopped.insert(process.pid);
+      if (process.pid != 0 && doctor::is_stopped(static_cast<int>(process.pid)))
+        stopped.insert(process.pid);
   return stopped;
 }
 
@@ -131,7 +123,7 @@ std::vector<LogNote> LauncherWatch::lines() const {
   return notes;
 }
 
-void Chronicle::add(const introspection::Decision& decision) {
+void EventHistory::add(const introspection::Decision& decision) {
   std::lock_guard lock(mutex_);
   const std::pair key(decision.entity, decision.service);
   if (decisions_.size() >= kHeads && !decisions_.contains(key)) {
@@ -144,7 +136,7 @@ void Chronicle::add(const introspection::Decision& decision) {
 }
 
 /// All entities of a process tell its lines, each with the same number.
-void Chronicle::add(const introspection::LogLine& line) {
+void EventHistory::add(const introspection::LogLine& line) {
   std::lock_guard lock(mutex_);
   if (!known_lines_.emplace(line.host, line.pid, line.number).second) return;
   lines_.push_back(line);
@@ -154,19 +146,19 @@ void Chronicle::add(const introspection::LogLine& line) {
   lines_.pop_front();
 }
 
-std::vector<introspection::Decision> Chronicle::latest_decisions() const {
+std::vector<introspection::Decision> EventHistory::latest_decisions() const {
   std::lock_guard lock(mutex_);
   std::vector<introspection::Decision> latest;
   for (const auto& [head, decisions] : decisions_) latest.push_back(decisions.back());
   return latest;
 }
 
-void Chronicle::tell(DomainState& state, std::vector<LogNote> printed) const {
+void EventHistory::tell(DomainState& state, std::vector<LogNote> printed) const {
   std::lock_guard lock(mutex_);
   for (const auto& [head, decisions] : decisions_) {
     for (const auto& decision : decisions) state.decisions.push_back(note_of(decision));
   }
-  // What the library logs is printed, too, behind its level and place.
+  // The library prints its log lines, too, behind level and place.
   std::erase_if(printed, [&](const LogNote& note) {
     return std::ranges::any_of(lines_, [&](const introspection::LogLine& line) {
       return !line.text.empty() && note.text.ends_with(": " + line.text);
@@ -186,12 +178,12 @@ DomainWatch::DomainWatch(Entity& entity, std::uint32_t domain, std::optional<Pla
       launchers_(domain),
       statistics_(entity.participant()),
       decisions_(entity.participant(), introspection::kDecisions,
-                 [this](const introspection::Decision& each) { chronicle_.add(each); }),
+                 [this](const introspection::Decision& each) { history_.add(each); }),
       log_(entity.participant(), introspection::kLog,
-           [this](const introspection::LogLine& each) { chronicle_.add(each); }) {}
+           [this](const introspection::LogLine& each) { history_.add(each); }) {}
 
 DomainState DomainWatch::look() {
-  Sight sight;
+  Observation sight;
   sight.picture = look_.take(true);
   std::erase_if(sight.picture, is_tool);
   sight.time = steady_nanoseconds();
@@ -199,14 +191,14 @@ DomainState DomainWatch::look() {
   sight.statistics = statistics_.latest();
   sight.missions = launchers_.missions();
   sight.stopped = stopped_of(sight.missions);
-  sight.decisions = chronicle_.latest_decisions();
+  sight.decisions = history_.latest_decisions();
   DomainState state = maker_.make(sight);
   state.domain = launchers_.domain();
   state.place = entity_.broker().options().place;
   state.time = sight.wall_time;
   for (const std::string& trouble : launchers_.troubles()) state.troubles.push_back(trouble);
   for (auto& mission : sight.missions) state.missions.push_back(std::move(mission));
-  chronicle_.tell(state, launchers_.lines());
+  history_.tell(state, launchers_.lines());
   return state;
 }
 

@@ -25,8 +25,8 @@ class Entity;
 
 namespace skein::command::designer {
 
-/// Asks this user's launchers, again and again on a thread of its own: one that is stopped keeps
-/// who asks waiting for ten seconds.
+/// Asks this user's launchers once a second, on a thread of its own: a launcher that is stopped
+/// delays the answer by ten seconds.
 class LauncherWatch {
  public:
   explicit LauncherWatch(std::uint32_t domain);
@@ -35,11 +35,11 @@ class LauncherWatch {
   LauncherWatch& operator=(const LauncherWatch&) = delete;
 
   std::uint32_t domain() const noexcept { return domain_; }
-  /// What those of the domain have said last, and for a minute those whose launcher has ended.
+  /// The last status of each launcher of the domain, and for a minute of those that have ended.
   std::vector<launch::MissionStatus> missions() const;
-  /// Who said nothing.
+  /// Launchers that did not answer.
   std::vector<std::string> troubles() const;
-  /// What their processes have printed last, and what became of them.
+  /// The last lines of their processes, printed or told by the launcher.
   std::vector<LogNote> lines() const;
 
  private:
@@ -63,13 +63,13 @@ class LauncherWatch {
 };
 
 /// The latest decisions of each Head and service, and the latest lines of logs. Thread-safe.
-class Chronicle {
+class EventHistory {
  public:
   void add(const introspection::Decision& decision);
   void add(const introspection::LogLine& line);
 
   std::vector<introspection::Decision> latest_decisions() const;  ///< One of each Head and service.
-  /// With what launchers have told, in order of time.
+  /// Adds decisions and log lines, with `printed`, in order of time.
   void tell(DomainState& state, std::vector<LogNote> printed) const;
 
  private:
@@ -98,9 +98,9 @@ class DomainWatch {
   StateMaker maker_;
   DomainLook look_;
   LauncherWatch launchers_;
-  Chronicle chronicle_;
+  EventHistory history_;
   introspection::StatisticsReader statistics_;
-  introspection::Reader<introspection::Decision> decisions_;  // its listener uses the chronicle,
+  introspection::Reader<introspection::Decision> decisions_;  // its listener uses the history,
   introspection::Reader<introspection::LogLine> log_;         // and so does this one's
 };
 

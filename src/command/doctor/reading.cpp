@@ -36,19 +36,11 @@ std::string read_file(const std::string& path) {
   return text.str();
 }
 
-bool is_stopped(const fs::path& process) {
-  const std::string text = read_file(process / "stat");
-  // The state follows the name, which stands in parentheses and may contain some.
-  const std::size_t at = text.rfind(") ");
-  return at != std::string::npos && at + 2 < text.size() &&
-         (text[at + 2] == 'T' || text[at + 2] == 't');
-}
-
 /// `process`: its folder in /proc.
 Program read_program(int pid, const fs::path& process) {
   Program program{pid, read_file(process / "comm")};
   program.name.resize(std::min(program.name.size(), program.name.find('\n')));
-  program.stopped = is_stopped(process);
+  program.stopped = is_stopped(pid);
   if (!program.stopped) return program;
   program.command = read_file(process / "cmdline");
   while (program.command.ends_with('\0')) program.command.pop_back();
@@ -154,6 +146,14 @@ bool may_set_any_priority() {
 }
 
 }  // namespace
+
+bool is_stopped(int pid) {
+  const std::string text = read_file("/proc/" + std::to_string(pid) + "/stat");
+  // The state follows the name, which stands in parentheses and may contain some.
+  const std::size_t at = text.rfind(") ");
+  return at != std::string::npos && at + 2 < text.size() &&
+         (text[at + 2] == 'T' || text[at + 2] == 't');
+}
 
 std::map<std::uint64_t, Program> owners_of_sockets() {
   std::map<std::uint64_t, Program> owners;

@@ -15,6 +15,9 @@ std::map<std::uint64_t, Program> owners_of_sockets();
 
 std::vector<Launcher> read_launchers(const std::map<std::uint64_t, Program>& owners);
 
+/// Whether a process is stopped, by a signal or a debugger.
+bool is_stopped(int pid);
+
 /// A line of /proc/net/udp.
 struct SocketLine {
   std::uint16_t port = 0;

@@ -158,6 +158,19 @@ void add_top(CLI::App& app, int& result) {
   add_exit_codes(command);
 }
 
+/// Where a command serves, and the token of its URL.
+void add_server(CLI::App& command, std::uint16_t& port, std::string& token, const char* variable) {
+  command.add_option("--port", port, "TCP port on loopback; 0 takes any that is free")
+      ->type_name("PORT")
+      ->capture_default_str();
+  command
+      .add_option("--token", token,
+                  "What the URL must contain, at least 16 letters and digits, which others can see "
+                  "on the command line, but not in the environment; default: a random one")
+      ->type_name("TOKEN")
+      ->envname(variable);
+}
+
 void add_view(CLI::App& app, int& result) {
   auto& command =
       add_command(app, "view", "Show a domain to Lichtblick or Foxglove, live",
@@ -165,15 +178,7 @@ void add_view(CLI::App& app, int& result) {
                    {"skein view --profile mission.xml --port 9000", "A mission, on another port"}});
   auto& arguments = arguments_of(command, serve_view, result);
   add_onlooker(command, arguments);
-  command.add_option("--port", arguments.port, "TCP port on loopback; 0 takes any that is free")
-      ->type_name("PORT")
-      ->capture_default_str();
-  command
-      .add_option("--token", arguments.token,
-                  "What the URL must contain, which others can see on the command line, but not in "
-                  "the environment; default: a random one")
-      ->type_name("TOKEN")
-      ->envname("SKEIN_VIEW_TOKEN");
+  add_server(command, arguments.port, arguments.token, "SKEIN_VIEW_TOKEN");
   command
       .add_option("--origin", arguments.origins,
                   "A web page that may look, such as http://localhost:8080; may be given several "
@@ -211,15 +216,7 @@ void add_designer(CLI::App& app, int& result) {
       throw CLI::RequiredError("One of --watch and --replay");
   });
   add_onlooker(command, arguments);
-  command.add_option("--port", arguments.port, "TCP port on loopback; 0 takes any that is free")
-      ->type_name("PORT")
-      ->capture_default_str();
-  command
-      .add_option("--token", arguments.token,
-                  "What the URL must contain, which others can see on the command line, but not in "
-                  "the environment; default: a random one")
-      ->type_name("TOKEN")
-      ->envname("SKEIN_DESIGNER_TOKEN");
+  add_server(command, arguments.port, arguments.token, "SKEIN_DESIGNER_TOKEN");
   command.add_flag("--faults", arguments.faults,
                    "Let those who look kill processes and make them hang, to see what the mission "
                    "bears: for missions in which nothing real can break");

@@ -9,12 +9,12 @@
 
 #include "command/commands.hpp"
 #include "command/print/figures.hpp"
+#include "command/print/graphviz.hpp"
 #include "command/print/interruption.hpp"
 #include "command/print/json_output.hpp"
 #include "core/printable.hpp"
 #include "core/system/whole_file.hpp"
 #include "entity/statistics_topic.hpp"
-#include "graphviz.hpp"
 #include "skein/discovery.idl.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"

@@ -9,7 +9,7 @@
 
 namespace skein::launch {
 
-/// The latest lines of a mission, for those who ask its launcher. Not thread-safe.
+/// The latest lines of a mission, for clients of its launcher. Not thread-safe.
 class RecentLines {
  public:
   static constexpr std::size_t kKept = 300;

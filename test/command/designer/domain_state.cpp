@@ -66,8 +66,8 @@ introspection::ServiceStatistics told(const Guid& provider, const std::string& s
 
 /// A client that has made so many calls to a navigator with a CSP in a process of its own and one
 /// in its own process.
-Sight mission(std::uint64_t calls = 0, std::uint64_t time = kSecond) {
-  Sight sight;
+Observation mission(std::uint64_t calls = 0, std::uint64_t time = kSecond) {
+  Observation sight;
   sight.time = time;
   sight.picture = {peer("uav-1/client", 1), peer("uav-1/navigator", 2),
                    peer("uav-1/navigator.AStar", 3)};
@@ -155,7 +155,7 @@ TEST_CASE("a count that begins anew, as after a restart, is no rate") {
 
 TEST_CASE("who does not answer twice is silent; one late answer says nothing") {
   StateMaker maker;
-  Sight sight = mission();
+  Observation sight = mission();
   sight.picture[1].process.reset();
   CHECK(entity(maker.make(sight), "uav-1/navigator").state == "ready");
   CHECK(entity(maker.make(sight), "uav-1/navigator").state == "silent");
@@ -164,7 +164,7 @@ TEST_CASE("who does not answer twice is silent; one late answer says nothing") {
 TEST_CASE("who has gone is shown for a minute, with all that it had") {
   StateMaker maker;
   maker.make(mission());
-  Sight sight = mission(0, 3 * kSecond);
+  Observation sight = mission(0, 3 * kSecond);
   sight.picture.resize(1);
   const DomainState state = maker.make(sight);
   CHECK(entity(state, "uav-1/navigator").state == "gone");
@@ -175,7 +175,7 @@ TEST_CASE("who has gone is shown for a minute, with all that it had") {
 }
 
 TEST_CASE("a launcher says why a process is not there, and how to reach it") {
-  Sight sight = mission();
+  Observation sight = mission();
   sight.missions = {launcher_says("navigator", "lost", "ended by signal 11"),
                     launcher_says("navigator/AStar", "waiting", "starts again in 1 s"),
                     launcher_says("radar", "starting", "for M/I")};
@@ -191,7 +191,7 @@ TEST_CASE("a launcher says why a process is not there, and how to reach it") {
 }
 
 TEST_CASE("a process that runs and is not seen is missing, and hangs if it is stopped") {
-  Sight sight = mission();
+  Observation sight = mission();
   sight.missions = {launcher_says("radar", "ready")};
   sight.missions[0].processes[0].pid = 7;
   StateMaker maker;
@@ -201,7 +201,7 @@ TEST_CASE("a process that runs and is not seen is missing, and hangs if it is st
 }
 
 TEST_CASE("a launcher's word is of its own system") {
-  Sight sight = mission();
+  Observation sight = mission();
   sight.picture.push_back(peer("uav-2/navigator", 4));
   sight.missions = {launcher_says("navigator", "ready")};
   const DomainState state = StateMaker().make(sight);
@@ -211,7 +211,7 @@ TEST_CASE("a launcher's word is of its own system") {
 
 TEST_CASE("who hangs keeps what it had, and its CSPs stay with it") {
   StateMaker maker;
-  Sight sight = mission();
+  Observation sight = mission();
   sight.missions = {launcher_says("navigator", "ready")};
   sight.missions[0].processes[0].pid = 2;
   launch::ProcessStatus csp;
@@ -236,7 +236,7 @@ TEST_CASE("who hangs keeps what it had, and its CSPs stay with it") {
 
 TEST_CASE("when a mission has ended, its entities have, and nobody can be asked about them") {
   StateMaker maker;
-  Sight sight = mission();
+  Observation sight = mission();
   sight.missions = {launcher_says("navigator", "ready")};
   maker.make(sight);
   sight.picture.clear();
@@ -253,7 +253,7 @@ TEST_CASE("when a mission has ended, its entities have, and nobody can be asked 
 }
 
 TEST_CASE("the plan is laid over what is there: missing and unplanned entities, CSPs and calls") {
-  Sight sight = mission();
+  Observation sight = mission();
   sight.picture.push_back(peer("uav-1/stranger", 4));
   const DomainState state = StateMaker(plan()).make(sight);
   CHECK(entity(state, "uav-1/weather").state == "missing");
@@ -274,7 +274,7 @@ TEST_CASE("the plan is laid over what is there: missing and unplanned entities, 
 }
 
 TEST_CASE("a dependency whose provider is there, and that is not called, is no fault") {
-  Sight sight = mission();
+  Observation sight = mission();
   sight.picture.push_back(peer("uav-1/weather", 4));
   provide(sight.picture.back(), "AE/IWeather", 1);
   const DomainState state = StateMaker(plan()).make(sight);
@@ -283,7 +283,7 @@ TEST_CASE("a dependency whose provider is there, and that is not called, is no f
 }
 
 TEST_CASE("a CSP that a Head does not ask any more is quarantined, until it may be tried again") {
-  Sight sight = mission();
+  Observation sight = mission();
   sight.wall_time = 3 * kSecond;
   introspection::Decision decision;
   decision.entity = "uav-1/navigator";
@@ -319,7 +319,7 @@ TEST_CASE("a launcher's lines are of the entity that its process is") {
 }
 
 TEST_CASE("what strangers call themselves is printable") {
-  Sight sight;
+  Observation sight;
   sight.picture = {peer("uav-1/\x1b[2J", 1)};
   CHECK(StateMaker().make(sight).entities.at(0).name == "uav-1/\\x1b[2J");
 }

@@ -54,6 +54,15 @@ async function until(holds) {
   }
 }
 
+const stateTime = () => page.evaluate(async () => (await (await fetch("state.json")).json()).time);
+/** Until the server has looked again. */
+async function newerState() {
+  const now = await stateTime();
+  await until(async () => (await stateTime()) > now);
+}
+/** Until the page has drawn. */
+const frame = () => page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
+
 const box = (name) => page.locator(`.box[data-id="${name}"]`);
 const readyBoxes = () => page.locator(".box.ready").count();
 const pids = () => page.evaluate(async () => (await (await fetch("state.json")).json()).entities.flatMap((entity) => entity.services))
@@ -144,7 +153,8 @@ test("a box that was moved stays where it is, also for who comes later", async (
   await page.mouse.up();
   const place = () => box(navigator).evaluate((element) => element.style.transform);
   const moved = await place();
-  await page.waitForTimeout(1500);
+  await newerState();
+  await newerState();
   assert.equal(await place(), moved);
   await page.reload();
   await until(async () => (await readyBoxes()) === 13);
@@ -274,9 +284,7 @@ test("fifty clients, one that never reads and one that says half a word change n
   const deaf = new WebSocket(`ws://127.0.0.1:${port}/${token}/socket`);
   deaf.on("open", () => deaf.pause());
   const half = net.connect(port, "127.0.0.1", () => half.write(`GET /${token}/ HT`));
-  const time = () => page.evaluate(async () => (await (await fetch("state.json")).json()).time);
-  const now = await time();
-  await until(async () => (await time()) > now);
+  await newerState();
   assert.equal(await readyBoxes(), 13);
   for (const each of [...sockets, deaf]) each.terminate();
   half.destroy();
@@ -331,8 +339,8 @@ test("the recording is replayed on the same page", async () => {
   const count = Number(await page.locator("#time").getAttribute("max"));
   for (let i = 0; i < count; ++i) {
     if (i === 0) await page.locator("#time").focus();
-    await page.keyboard.press("ArrowLeft");
-    await page.waitForTimeout(30);
+    await Promise.all([page.waitForResponse(/state\.json\?at=/), page.keyboard.press("ArrowLeft")]);
+    await frame();
     if (!(await box(navigator).count())) continue;
     wasKilled ||= /restarted once/.test(await state());
     wasReady ||= wasKilled && /process \d+$/.test(await state());

@@ -34,7 +34,7 @@ std::string header(const view::Reply& reply, const std::string& name) {
   return "";
 }
 
-Powers powers(std::string& asked, bool faults = false) {
+Actions actions(std::string& asked, bool faults = false) {
   return {[&asked](int launcher, const std::string& request) {
             asked = std::to_string(launcher) + ": " + request;
             return std::string("done");
@@ -147,16 +147,16 @@ TEST_CASE("before the site knows its port it turns everybody away") {
 
 TEST_CASE("the page asks launchers for what they can do") {
   std::string asked;
-  CHECK(obey(R"({"do": "restart", "launcher": 7, "process": "navigator/AStar"})", powers(asked)) ==
+  CHECK(obey(R"({"do": "restart", "launcher": 7, "process": "navigator/AStar"})", actions(asked)) ==
         "done");
   CHECK(asked == "7: restart navigator/AStar");
-  obey(R"({"do": "stop", "launcher": 7})", powers(asked));
+  obey(R"({"do": "stop", "launcher": 7})", actions(asked));
   CHECK(asked == "7: stop");
-  obey(R"({"do": "kill", "launcher": 7, "process": "a"})", powers(asked, true));
+  obey(R"({"do": "kill", "launcher": 7, "process": "a"})", actions(asked, true));
   CHECK(asked == "7: kill a");
-  obey(R"({"do": "move", "entity": "a/b", "x": 1, "y": -2.5})", powers(asked));
+  obey(R"({"do": "move", "entity": "a/b", "x": 1, "y": -2.5})", actions(asked));
   CHECK(asked == "a/b to 1.000000, -2.500000");
-  obey(R"({"do": "arrange"})", powers(asked));
+  obey(R"({"do": "arrange"})", actions(asked));
   CHECK(asked == "arrange");
 }
 
@@ -177,6 +177,6 @@ TEST_CASE("a request that is none does nothing, and is told why") {
   }));
   std::string asked;
   CAPTURE(request);
-  CHECK_THROWS_WITH(obey(request, powers(asked)), Contains(reason));
+  CHECK_THROWS_WITH(obey(request, actions(asked)), Contains(reason));
   CHECK(asked.empty());
 }

@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -15,6 +14,7 @@
 
 #include "core/system/file_descriptor.hpp"
 #include "skein/error.hpp"
+#include "start_program.hpp"
 
 namespace skein::command {
 namespace {
@@ -37,28 +37,7 @@ FileDescriptor graph_file(const std::string& text) {
 /// A process that is killed, unless it has ended by itself.
 class Dot {
  public:
-  Dot(const std::string& format, int input, int output) {
-    posix_spawn_file_actions_t actions;
-    posix_spawnattr_t attributes;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawnattr_init(&attributes);
-    posix_spawn_file_actions_adddup2(&actions, input, STDIN_FILENO);
-    posix_spawn_file_actions_adddup2(&actions, output, STDOUT_FILENO);
-    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_addclosefrom_np(&actions, STDERR_FILENO + 1);
-    sigset_t none;
-    sigemptyset(&none);
-    posix_spawnattr_setsigmask(&attributes, &none);
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
-    std::string program = "dot", option = "-T" + format;
-    std::array<char*, 3> arguments{program.data(), option.data(), nullptr};
-    const int failure = ::posix_spawnp(&process_, program.c_str(), &actions, &attributes,
-                                       arguments.data(), environ);
-    posix_spawnattr_destroy(&attributes);
-    posix_spawn_file_actions_destroy(&actions);
-    if (failure == ENOENT) throw_no_dot("there is no program `dot`; install the package graphviz");
-    if (failure != 0) throw_no_dot(std::string("`dot` does not start: ") + std::strerror(failure));
-  }
+  explicit Dot(pid_t process) : process_(process) {}
   ~Dot() {
     if (process_ <= 0) return;
     ::kill(process_, SIGKILL);
@@ -77,8 +56,14 @@ class Dot {
   }
 
  private:
-  pid_t process_ = 0;
+  pid_t process_;
 };
+
+pid_t start_dot(const std::string& format, int input, int output) try {
+  return start_program(std::array<std::string, 2>{"dot", "-T" + format}, input, output);
+} catch (const Unavailable& error) {
+  throw_no_dot(std::string(error.what()) + "; it is in the package graphviz");
+}
 
 std::string read_all(int descriptor, Clock::time_point deadline) {
   std::string text;
@@ -104,7 +89,7 @@ std::string run_dot(const std::string& format, const std::string& graph) {
     throw_no_dot(std::string("no pipe: ") + std::strerror(errno));
   const FileDescriptor output(ends[0]);
   FileDescriptor written(ends[1]);
-  Dot dot(format, input.get(), written.get());
+  Dot dot(start_dot(format, input.get(), written.get()));
   written.reset();
   std::string text = read_all(output.get(), Clock::now() + kPatience);
   if (!dot.has_succeeded()) throw_no_dot("`dot` failed");
