@@ -393,8 +393,11 @@ TEST_CASE("of two threads that wait for one link, one takes what comes, and the 
   const bool began = eventually([&] { return asked.load(); });
   if (began) delivery->deliver_until([] { return false; });
   client.send("x");
+  const bool come = eventually([&] { return host.notes.about(client.id).size() == 2; });
+  delivery->wake();  // the receiver's thread may have taken it, since the link is taken back
   first.join();
   CHECK(began);
+  CHECK(come);
   CHECK(host.notes.about(client.id) == std::vector<std::string>{"begin", "x"});
 }
 

@@ -225,7 +225,8 @@ TEST_CASE("Of a mission's lines the latest are kept, and of a long one the begin
 }
 
 TEST_CASE("What a mission must bear is done to its processes on request") {
-  auto child = shell_child("a", kWait);
+  // A shell that is just starting another program is not seen to be stopped: it waits in vfork().
+  auto child = shell_child("a", "ready; exec sleep 1000");
   child.rules.restart.policy = profile::RestartPolicy::OnFailure;
   RunningMission mission({child});
   REQUIRE(mission.becomes(0, "ready"));
