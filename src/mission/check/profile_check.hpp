@@ -36,6 +36,10 @@ MissionProfile read_and_check(const std::filesystem::path& file, std::vector<Fin
                               const VariableValues& values = {},
                               const std::vector<std::string>& settings = {});
 
+/// The same of what a file will hold, which its parts and components are relative to.
+MissionProfile check_text(const std::string& text, const std::filesystem::path& file,
+                          std::vector<Finding>& findings, const VariableValues& values = {});
+
 /// The findings of read_and_check().
 std::vector<Finding> check_file(const std::filesystem::path& file,
                                 const VariableValues& values = {});

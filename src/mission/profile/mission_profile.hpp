@@ -118,10 +118,11 @@ MissionProfile read_mission_profile(const std::filesystem::path& file,
                                     const VariableValues& values = {});
 
 /// As above, but adds the findings to `findings` and gives what could be read: for tools that show
-/// everything that is wrong in one go.
+/// everything that is wrong in one go. `text`, unless null: what the file will hold.
 MissionProfile read_mission_profile(const std::filesystem::path& file,
                                     std::vector<Finding>& findings,
-                                    const VariableValues& values = {});
+                                    const VariableValues& values = {},
+                                    const std::string* text = nullptr);
 
 /// Gives a parameter a value from the command line, `PEER.PARAMETER=VALUE` or
 /// `PEER/CSP.PARAMETER=VALUE`, in place of the profile's. Throws InvalidArgument for an unknown

@@ -315,10 +315,11 @@ class MissionReader {
   std::set<std::filesystem::path> value_files_;
 };
 
+/// What the file holds, or will hold if there is a text.
 MissionProfile read_mission(const std::filesystem::path& file, const VariableValues& values,
-                            FindingList& findings) {
+                            FindingList& findings, const std::string* text = nullptr) {
   try {
-    XmlNode root = parse_xml(read_text_file(file), file.string(), findings);
+    XmlNode root = parse_xml(text ? *text : read_text_file(file), file.string(), findings);
     if (root.name != mission_notation().name) {
       findings.error(root.where, "<" + shortened(root.name) + "> is no mission profile",
                      "its outermost element is <mission name=\"...\">");
@@ -341,9 +342,10 @@ MissionProfile read_mission(const std::filesystem::path& file, const VariableVal
 }  // namespace
 
 MissionProfile read_mission_profile(const std::filesystem::path& file,
-                                    std::vector<Finding>& findings, const VariableValues& values) {
+                                    std::vector<Finding>& findings, const VariableValues& values,
+                                    const std::string* text) {
   FindingList list;
-  auto mission = read_mission(file, values, list);
+  auto mission = read_mission(file, values, list, text);
   findings.insert(findings.end(), list.list().begin(), list.list().end());
   return mission;
 }

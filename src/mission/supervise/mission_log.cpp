@@ -4,10 +4,10 @@
 #include <array>
 #include <cerrno>
 #include <cstdio>
-#include <cstdlib>
 #include <system_error>
 
 #include "core/printable.hpp"
+#include "core/system/state_folder.hpp"
 #include "core/utc_text.hpp"
 #include "skein/error.hpp"
 
@@ -49,14 +49,8 @@ const std::filesystem::path& made(const std::filesystem::path& folder) {
 
 std::filesystem::path log_folder(const profile::MissionProfile& mission) {
   const std::string name = file_name(mission.name) + "-" + std::to_string(mission.domain);
-  const auto set = [](const char* variable) {
-    const char* value = std::getenv(variable);
-    return std::filesystem::path(value == nullptr ? "" : value);
-  };
-  if (const auto state = set("XDG_STATE_HOME"); state.is_absolute()) return state / "skein" / name;
-  if (const auto home = set("HOME"); home.is_absolute())
-    return home / ".local" / "state" / "skein" / name;
-  return {};
+  const std::filesystem::path state = state_folder();
+  return state.empty() ? state : state / name;
 }
 
 MissionLog::MissionLog(const std::filesystem::path& folder, const RotatingFile::Limits& limits)

@@ -68,7 +68,7 @@ class Schema {
   pugi::xml_document document_;
 };
 
-const Schema& mission_schema() {
+const Schema& schema_of_missions() {
   static const Schema kSchema(kMissionSchema);
   return kSchema;
 }
@@ -104,13 +104,15 @@ const Notation* Notation::find_child(std::string_view child_name) const {
   return found == children.end() ? nullptr : &*found;
 }
 
+std::string_view mission_schema() { return kMissionSchema; }
+
 const Notation& mission_notation() {
-  static const Notation kMission = mission_schema().element("mission");
+  static const Notation kMission = schema_of_missions().element("mission");
   return kMission;
 }
 
 const Notation& part_notation() {
-  static const Notation kPart = mission_schema().element("part");
+  static const Notation kPart = schema_of_missions().element("part");
   return kPart;
 }
 
@@ -131,7 +133,7 @@ const Names& attribute_group(const char* name) {
     std::map<std::string_view, Names> groups;
     for (const char* group :
          {kMissionDefaults, kGroupDefaults, kProcessAttributes, kThreadAttributes, kHeadAttributes})
-      groups.emplace(group, mission_schema().group(group));
+      groups.emplace(group, schema_of_missions().group(group));
     return groups;
   }();
   return kGroups.at(name);

@@ -21,6 +21,8 @@ struct Notation {
 };
 
 const Notation& mission_notation();
+/// All of it as an XML schema.
+std::string_view mission_schema();
 /// Of a file that a profile includes.
 const Notation& part_notation();
 const Notation& component_notation();
