@@ -18,10 +18,9 @@ namespace {
 
 /// `sh` ends at once, so that this process need not wait for the browser.
 void open_in_browser(const std::string& file) {
-  const FileDescriptor nothing(::open("/dev/null", O_RDWR | O_CLOEXEC));
   const std::array<std::string, 5> words{"sh", "-c", R"(xdg-open "$1" &)", "sh", file};
   try {
-    ::waitpid(start_program(words, nothing.get(), nothing.get()), nullptr, 0);
+    ::waitpid(start_program(words, {}), nullptr, 0);
   } catch (const Unavailable& error) {
     std::fprintf(stderr, "skein: %s\n", error.what());
   }

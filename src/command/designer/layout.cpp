@@ -266,10 +266,24 @@ void Layout::settle(const Drawing& drawing, const std::vector<Place>& proposed) 
 }
 
 void Layout::move(const std::string& entity, Place to) {
-  const auto place = places_.find(entity);
-  if (place == places_.end()) return;
-  place->second = to;
+  if (places_.contains(entity)) place(entity, to);
+}
+
+void Layout::place(const std::string& entity, Place at) {
+  places_[entity] = at;
   moved_ = true;
+}
+
+void Layout::rename(const std::string& entity, const std::string& to) {
+  auto place = places_.extract(entity);
+  if (!place) return;
+  place.key() = to;
+  places_.insert(std::move(place));
+}
+
+void Layout::restore(std::map<std::string, Place> places) {
+  moved_ = !places.empty();
+  places_ = std::move(places);
 }
 
 void Layout::forget() {

@@ -47,10 +47,18 @@ class Layout {
 
   /// As a user moves a box.
   void move(const std::string& entity, Place to);
+  /// The same of one that is to come.
+  void place(const std::string& entity, Place at);
+  /// It stays where it is.
+  void rename(const std::string& entity, const std::string& to);
   /// All are placed anew the next time.
   void forget();
 
   const std::string& failure() const noexcept { return failure_; }
+
+  /// Of all boxes that were arranged, to put them there again.
+  const std::map<std::string, Place>& places() const noexcept { return places_; }
+  void restore(std::map<std::string, Place> places);
 
  private:
   std::vector<Place> placed(const Drawing& drawing);

@@ -50,17 +50,18 @@ void PageHub::close() {
   waiting_.stop();
 }
 
-void PageHub::publish(std::shared_ptr<const std::string> state) {
+void PageHub::publish(Kind kind, std::shared_ptr<const std::string> state) {
   std::lock_guard lock(mutex_);
-  state_ = std::move(state);
-  ++number_;
+  State& place = states_[static_cast<std::size_t>(kind)];
+  place.text = std::move(state);
+  ++place.number;
   for (const auto& [number, client] : clients_) client.connection->wake();
 }
 
-std::shared_ptr<const std::string> PageHub::look() {
+std::shared_ptr<const std::string> PageHub::look(Kind kind) {
   std::lock_guard lock(mutex_);
   looked_ = std::chrono::steady_clock::now();
-  return state_;
+  return states_[static_cast<std::size_t>(kind)].text;
 }
 
 bool PageHub::is_watched() const {
@@ -108,18 +109,21 @@ void PageHub::answer(std::uint64_t client, std::string text) {
   place->second.connection->wake();
 }
 
+/// The state first: what a request has done is there when its answer comes.
 std::optional<view::Frame> PageHub::next(std::uint64_t client) {
   std::lock_guard lock(mutex_);
   Place& place = clients_.at(client);
-  if (!place.answers.empty()) {
-    view::Frame frame{true, std::move(place.answers.front()), nullptr};
-    place.answers.erase(place.answers.begin());
-    if (place.requests > 0) --place.requests;
-    return frame;
+  for (std::size_t kind = 0; kind < states_.size(); ++kind) {
+    const State& state = states_[kind];
+    if (!state.text || place.seen[kind] == state.number) continue;
+    place.seen[kind] = state.number;
+    return view::Frame{true, "", state.text};
   }
-  if (!state_ || place.seen == number_) return std::nullopt;
-  place.seen = number_;
-  return view::Frame{true, "", state_};
+  if (place.answers.empty()) return std::nullopt;
+  view::Frame frame{true, std::move(place.answers.front()), nullptr};
+  place.answers.erase(place.answers.begin());
+  if (place.requests > 0) --place.requests;
+  return frame;
 }
 
 void PageHub::leave(std::uint64_t client) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -14,8 +15,8 @@
 
 namespace skein::command::designer {
 
-/// Sends each client of the page the newest state, as fast as the client takes it, and the answers
-/// to its requests. Thread-safe; no function waits for a client.
+/// Sends each client of the page the newest state of each kind, as fast as the client takes it, and
+/// the answers to its requests. Thread-safe; no function waits for a client.
 class PageHub : public std::enable_shared_from_this<PageHub> {
  public:
   /// Carries out a request and returns the answer; what it throws is the answer, too. Called on
@@ -31,11 +32,13 @@ class PageHub : public std::enable_shared_from_this<PageHub> {
   explicit PageHub(Obey obey) : obey_(std::move(obey)) {}
   ~PageHub();
 
-  /// Null: there is none any more.
-  void publish(std::shared_ptr<const std::string> state);
+  enum class Kind { Domain, Design };
 
-  /// The newest state; somebody wants to see it.
-  std::shared_ptr<const std::string> look();
+  /// Null: there is none any more.
+  void publish(Kind kind, std::shared_ptr<const std::string> state);
+
+  /// The newest state of that kind; somebody wants to see it.
+  std::shared_ptr<const std::string> look(Kind kind = Kind::Domain);
   /// Whether there is a client, or somebody has looked some seconds ago.
   bool is_watched() const;
 
@@ -49,9 +52,14 @@ class PageHub : public std::enable_shared_from_this<PageHub> {
   class Client;
   struct Place {
     view::Connection* connection;
-    std::uint64_t seen = 0;  // which state it was sent
+    std::array<std::uint64_t, 2> seen{};  // which states it was sent
     std::size_t requests = 0;
     std::vector<std::string> answers{};
+  };
+
+  struct State {
+    std::shared_ptr<const std::string> text;
+    std::uint64_t number = 0;
   };
 
   void take(std::uint64_t client, std::string request);
@@ -63,8 +71,7 @@ class PageHub : public std::enable_shared_from_this<PageHub> {
   mutable std::mutex mutex_;  // of what follows, but the executor
   std::map<std::uint64_t, Place> clients_;
   std::uint64_t last_client_ = 0;
-  std::shared_ptr<const std::string> state_;
-  std::uint64_t number_ = 0;  // of the state
+  std::array<State, 2> states_;  // by kind
   std::chrono::steady_clock::time_point looked_{};
   // Both are bounded by kRequests.
   ThreadExecutor quick_{"skein-view-call", 1, SIZE_MAX};

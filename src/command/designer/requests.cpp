@@ -1,38 +1,16 @@
 #include "requests.hpp"
 
 #include <array>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/printable.hpp"
+#include "request_members.hpp"
 #include "skein/error.hpp"
 
 namespace skein::command::designer {
 namespace {
 
 using Json = nlohmann::json;
-
-/// Farther away nobody finds a box again.
-constexpr double kFarthest = 1e6;
-
-const Json& member(const Json& request, const char* name) {
-  const auto found = request.find(name);
-  if (found == request.end())
-    throw InvalidArgument(std::string("the request has no member '") + name + "'");
-  return *found;
-}
-
-std::string text_of(const Json& request, const char* name) {
-  const Json& value = member(request, name);
-  if (value.is_string()) return value.get<std::string>();
-  throw InvalidArgument(std::string("the member '") + name + "' is no text");
-}
-
-double number_of(const Json& request, const char* name, double most) {
-  const Json& value = member(request, name);
-  if (value.is_number() && std::abs(value.get<double>()) <= most) return value.get<double>();
-  throw InvalidArgument(std::string("the member '") + name + "' is no number, or too great");
-}
 
 /// It is one line to the launcher.
 std::string process_of(const Json& request) {
@@ -60,8 +38,7 @@ std::string do_fault(const Json& request, const std::string& fault, const Action
 }  // namespace
 
 std::string obey(std::string_view text, const Actions& actions) {
-  const Json request = Json::parse(text, nullptr, false);
-  if (!request.is_object()) throw InvalidArgument("a request is a JSON object");
+  const Json request = request_of(text);
   const std::string what = text_of(request, "do");
   if (what == "stop") return ask_about(request, what, actions);
   if (what == "restart") return ask_about(request, what + " " + process_of(request), actions);

@@ -1,10 +1,13 @@
 #include "site.hpp"
 
 #include <charconv>
+#include <cstdio>
 #include <utility>
 
+#include "page_hub.hpp"
 #include "skein/error.hpp"
 #include "view/gate.hpp"
+#include "view/web_socket.hpp"
 
 namespace skein::command::designer {
 namespace {
@@ -14,6 +17,8 @@ constexpr std::uint16_t kUsualPort = 80;  // which browsers leave out
 constexpr std::string_view kSocket = "socket";
 constexpr std::string_view kState = "state.json";
 constexpr std::string_view kTimes = "times.json";
+constexpr std::string_view kDesign = "design.json";
+constexpr std::string_view kSchema = "mission.xsd";
 constexpr std::string_view kJson = "application/json";
 
 /// Nothing is loaded from elsewhere, nothing is run that is not a file of the page, nobody frames
@@ -112,9 +117,42 @@ view::Reply Site::state(std::string_view query) const {
 view::Reply Site::file(std::string_view name, std::string_view query) const {
   if (name == kState) return state(query);
   if (name == kTimes) return with_type(200, content_.times ? *content_.times : "null", kJson);
+  if (name == kDesign && content_.design) return with_type(200, *content_.design(), kJson);
+  if (name == kSchema && !content_.schema.empty())
+    return with_type(200, std::string(content_.schema), "application/xml");
   const PageFile* const found = find_page_file(name.empty() ? "index.html" : name);
   if (!found) return words(404, "There is no such file.");
   return with_type(200, std::string(found->text), found->type);
 }
+
+namespace {
+
+view::WebSocketOptions socket_options(const SiteOptions& options) {
+  view::WebSocketOptions socket;
+  socket.address = "127.0.0.1";
+  socket.port = options.port;
+  socket.max_clients = 64;
+  socket.max_message = options.max_message;
+  socket.handshake = std::chrono::seconds(5);
+  socket.patience = std::chrono::seconds(30);
+  return socket;
+}
+
+}  // namespace
+
+ServedSite::ServedSite(const SiteOptions& options, Site::Content content,
+                       const std::shared_ptr<PageHub>& hub)
+    : site_(options.token.empty() ? view::random_token() : options.token, std::move(content)),
+      listener_(std::make_unique<view::WebSocketListener>(
+          socket_options(options), [this](const view::Visit& visit) { return site_.reply(visit); },
+          [hub](view::Connection& connection) { return hub->open(connection); })) {
+  site_.listens_at(listener_->port());
+  std::printf("Open this in a browser. Whoever knows it may %s.\n%s\n", options.rights.c_str(),
+              site_.url().c_str());
+  std::fflush(stdout);
+  if (!options.no_browser) browser_.emplace(site_.url());
+}
+
+ServedSite::~ServedSite() = default;
 
 }  // namespace skein::command::designer

@@ -8,9 +8,16 @@
 #include <string>
 #include <string_view>
 
+#include "browser.hpp"
 #include "view/visit.hpp"
 
+namespace skein::view {
+class WebSocketListener;
+}
+
 namespace skein::command::designer {
+
+class PageHub;
 
 /// A file of the page, which the program contains.
 struct PageFile {
@@ -36,6 +43,10 @@ class Site {
     std::function<Json(std::optional<std::uint64_t> at)> state;
     /// Of a recording, its times. Null: the state is live.
     Json times{};
+    /// Of a mission that is composed, all that there is to say; null: none is.
+    std::function<Json()> design{};
+    /// What may stand in one, as an XML schema.
+    std::string_view schema{};
   };
 
   /// Throws InvalidArgument for a token as view::Gate does.
@@ -56,6 +67,28 @@ class Site {
   const std::string token_;
   const Content content_;
   std::atomic<std::uint16_t> port_{0};
+};
+
+struct SiteOptions {
+  std::uint16_t port = 0;
+  std::string token;                                ///< Empty: a random one.
+  bool no_browser = false;                          ///< Opens none.
+  std::size_t max_message = std::size_t{64} << 10;  ///< In bytes, of a client.
+  std::string rights;                               ///< What those who know the URL may, in words.
+};
+
+/// A site on loopback; prints its URL. Throws as Site and view::WebSocketListener.
+class ServedSite {
+ public:
+  /// The hub may be null, for a site without WebSocket.
+  ServedSite(const SiteOptions& options, Site::Content content,
+             const std::shared_ptr<PageHub>& hub);
+  ~ServedSite();
+
+ private:
+  Site site_;
+  const std::unique_ptr<const view::WebSocketListener> listener_;
+  std::optional<Browser> browser_;
 };
 
 }  // namespace skein::command::designer

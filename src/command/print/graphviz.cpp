@@ -60,7 +60,7 @@ class Dot {
 };
 
 pid_t start_dot(const std::string& format, int input, int output) try {
-  return start_program(std::array<std::string, 2>{"dot", "-T" + format}, input, output);
+  return start_program(std::array<std::string, 2>{"dot", "-T" + format}, {input, output});
 } catch (const Unavailable& error) {
   throw_no_dot(std::string(error.what()) + "; it is in the package graphviz");
 }

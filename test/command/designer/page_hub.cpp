@@ -49,12 +49,12 @@ class OpenHub {
 TEST_CASE("a client gets the newest state when it comes, and each that follows") {
   OpenHub open;
   CHECK(!open.hub->is_watched());
-  open.hub->publish(text("1"));
+  open.hub->publish(PageHub::Kind::Domain, text("1"));
   WebClient client(open.url);
   REQUIRE(client.open());
   CHECK(client.receive()->bytes == "1");
   CHECK(open.hub->is_watched());
-  open.hub->publish(text("2"));
+  open.hub->publish(PageHub::Kind::Domain, text("2"));
   CHECK(client.receive()->bytes == "2");
 }
 
@@ -77,7 +77,7 @@ TEST_CASE("a request is answered to who has asked, by its number") {
   CHECK(client.receive()->bytes == R"({"done":false,"request":8,"text":"it is bad"})");
   client.send_binary("x");
   CHECK(client.receive()->bytes == R"({"done":false,"request":null,"text":"requests are text"})");
-  open.hub->publish(text("state"));
+  open.hub->publish(PageHub::Kind::Domain, text("state"));
   CHECK(other.receive()->bytes == "state");
 }
 
@@ -93,7 +93,7 @@ TEST_CASE("who asks too much at once, or too long, is dropped, and the others st
   CHECK(greedy.is_ended());
   wordy.send_text(std::string(5000, ' '));
   CHECK(wordy.is_ended());
-  open.hub->publish(text("1"));
+  open.hub->publish(PageHub::Kind::Domain, text("1"));
   CHECK(other.receive()->bytes == "1");
   go_on.set_value();
 }
@@ -119,7 +119,7 @@ TEST_CASE("a slow client skips states, and holds nobody up") {
   REQUIRE((slow.open() && other.open()));
   const std::string much(4 << 20, 'x');
   for (int i = 0; i < 20; ++i) {
-    open.hub->publish(text(std::to_string(i) + much));
+    open.hub->publish(PageHub::Kind::Domain, text(std::to_string(i) + much));
     CHECK(other.receive()->bytes.starts_with(std::to_string(i) + "x"));
   }
   std::vector<std::string> seen;
@@ -135,7 +135,7 @@ TEST_CASE("fifty clients see the same") {
     clients.push_back(std::make_unique<WebClient>(open.url));
     REQUIRE(clients.back()->open());
   }
-  open.hub->publish(text("1"));
+  open.hub->publish(PageHub::Kind::Domain, text("1"));
   for (const auto& client : clients) CHECK(client->receive()->bytes == "1");
   clients.clear();
   CHECK(eventually([&] { return !open.hub->is_watched(); }));
