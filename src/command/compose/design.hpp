@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "design_state.idl.hpp"
+#include "mission/profile/mission_profile.hpp"
+#include "repository.hpp"
+
+namespace skein::command::compose {
+
+/// All of a DesignState that follows from the text of a mission: elements, findings as `skein
+/// check` has them without this machine's, entities without their places. Of text that is no
+/// well-formed XML, only the findings. Reads the files that the mission names.
+DesignState design_of(const std::string& text, const std::filesystem::path& file,
+                      const profile::VariableValues& values, const Repository& repository);
+
+/// How a mission in that folder names a file: relatively, unless they have nothing in common.
+std::string reference_to(const std::filesystem::path& file, const std::filesystem::path& folder);
+
+/// As XmlSource has it: no element.
+inline constexpr int kNoElement = -1;
+
+}  // namespace skein::command::compose

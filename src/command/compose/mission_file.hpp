@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "text_history.hpp"
+
+namespace skein::command::compose {
+
+/// A file that is edited, and may be edited by others meanwhile. Not thread-safe.
+class MissionFile {
+ public:
+  /// What others have done to the file since it was read or written here.
+  enum class Disk { Same, Changed, Gone };
+
+  /// Reads the file; if there is none, it will have `text_if_new`. Throws DescriptionError as
+  /// read_text_file().
+  MissionFile(std::filesystem::path file, const std::string& text_if_new);
+
+  const std::filesystem::path& file() const noexcept { return file_; }
+  const TextHistory& history() const noexcept { return history_; }
+  TextHistory& history() noexcept { return history_; }
+  const std::string& text() const noexcept { return history_.text(); }
+
+  /// Whether the file has another text, as far as it was read or written here.
+  bool is_changed() const { return saved_ != history_.text(); }
+
+  /// What the file has, as far as it was read or written here; nothing: there is none.
+  const std::optional<std::string>& saved() const noexcept { return saved_; }
+
+  Disk disk() const;
+
+  /// Throws Unavailable if others have changed the file, unless `over` them, and as
+  /// write_whole_file().
+  void save(bool over);
+
+  /// Takes what is on the disk in place of the text, as an edit. Throws DescriptionError.
+  void load();
+
+ private:
+  const std::filesystem::path file_;
+  std::optional<std::string> saved_;  // none: there was no file
+  TextHistory history_;
+};
+
+}  // namespace skein::command::compose
