@@ -292,6 +292,8 @@ struct ViewArguments : Onlooker {
 int serve_view(const ViewArguments& arguments);
 
 struct DesignerArguments : Onlooker {
+  std::string composed;                 ///< A profile, to compose it.
+  std::vector<std::string> components;  ///< Folders.
   bool watch = false;
   std::string replay;  ///< A recording, in place of the domain.
   std::uint16_t port = 8080;
@@ -300,8 +302,8 @@ struct DesignerArguments : Onlooker {
   bool no_browser = false;
 };
 
-/// `skein designer`: a page that shows a domain while missions fly there, or a recording, until
-/// interrupted.
+/// `skein designer`: a page on which a mission is composed, or that shows a domain while missions
+/// fly there, or a recording, until interrupted.
 int serve_designer(const DesignerArguments& arguments);
 
 struct RecordArguments : Onlooker {

@@ -192,30 +192,56 @@ void add_view(CLI::App& app, int& result) {
 void add_designer(CLI::App& app, int& result) {
   auto& command = add_command(
       app, "designer",
-      "Show a mission on a page, live or recorded\n\n"
-      "Entities are boxes with their CSPs; lines between them are calls and topics, with rates, "
-      "latencies and transports. With a profile, what it has and nobody has seen is dashed. "
+      "Compose a mission on a page, or watch one, live or recorded\n\n"
+      "Entities are boxes with their CSPs. To compose, drop components there; what the mission "
+      "lacks is told as `skein check` finds it; the file keeps all that nobody changes. While a "
+      "mission flies, lines between boxes are calls and topics, with rates, "
+      "latencies and transports; what a profile has and nobody has seen is dashed. "
       "Processes of missions that this user flies here can be restarted, and missions be stopped. "
       "What the page shows is at state.json beside it, for programs. Boxes are placed by Graphviz "
       "(package graphviz).",
-      {{"skein designer --watch --domain 47", "A mission that somebody has started"},
+      {{"skein designer mission.xml", "Compose a mission; the file need not be there yet"},
+       {"skein designer mission.xml --components /opt/boat/components",
+        "The same, with components of another folder"},
+       {"skein designer --watch --domain 47", "A mission that somebody has started"},
        {"skein designer --watch --profile mission.xml", "The same, over what the profile expects"},
        {"skein designer --watch --profile mission.xml --faults",
         "A simulated mission, whose processes may be killed"},
        {"skein designer --replay flight.mcap", "What was recorded, with a slider for the time"}});
   auto& arguments = arguments_of(command, serve_designer, result);
-  auto* watch = command.add_flag("--watch", arguments.watch,
-                                 "Show a mission that somebody starts, while it flies");
+  auto* composed =
+      command
+          .add_option("PROFILE", arguments.composed, "The mission profile (XML) that is composed")
+          ->type_name(kFile);
+  auto* watch = command
+                    .add_flag("--watch", arguments.watch,
+                              "Show a mission that somebody starts, while it flies")
+                    ->excludes(composed);
   auto* replay = command
                      .add_option("--replay", arguments.replay,
                                  "Show a recording that `skein record` has made; default: none")
                      ->type_name(kFile)
-                     ->excludes(watch);
-  command.parse_complete_callback([watch, replay] {
-    if (watch->count() + replay->count() == 0)
-      throw CLI::RequiredError("One of --watch and --replay");
-  });
+                     ->excludes(watch)
+                     ->excludes(composed);
+  command
+      .add_option(
+          "--components", arguments.components,
+          "A folder with component descriptions, also in folders in it; may be given several "
+          "times; default: only those beside the profile and Skein's own")
+      ->type_name("FOLDER")
+      ->check(CLI::ExistingDirectory)
+      ->needs(composed)
+      ->allow_extra_args(false);
   add_onlooker(command, arguments);
+  auto* profile = command.get_option("--profile")->excludes(composed);
+  auto* variables = command.get_option("--variable");
+  variables->remove_needs(profile);
+  command.parse_complete_callback([=] {
+    if (composed->count() + watch->count() + replay->count() == 0)
+      throw CLI::RequiredError("A profile, --watch or --replay");
+    if (variables->count() > 0 && composed->count() + profile->count() == 0)
+      throw CLI::RequiresError(variables->get_name(), "a profile");
+  });
   add_server(command, arguments.port, arguments.token, "SKEIN_DESIGNER_TOKEN");
   command.add_flag("--faults", arguments.faults,
                    "Let those who look kill processes and make them hang, to see what the mission "

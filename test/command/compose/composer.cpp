@@ -1,0 +1,382 @@
+// A mission while it is composed: what each request makes of its text, and of what the page shows.
+#include "command/compose/composer.hpp"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <random>
+
+#include "core/system/whole_file.hpp"
+#include "mission_text.hpp"
+#include "skein/detail/type_support.hpp"
+#include "skein/error.hpp"
+#include "test/tools/temporary_folder.hpp"
+
+using namespace skein;
+using namespace skein::command;
+using namespace skein::command::compose;
+using Catch::Contains;
+using Json = nlohmann::json;
+
+namespace {
+
+const std::string kDictionary = R"(<dictionary>
+  <parameter name="Rate" type="integer" unit="Hz" min="1" max="50">How often.</parameter>
+</dictionary>)";
+
+const std::string kPilot = R"(<component name="Pilot">
+  <interfaces><implements><type>IDL:boat/IPilot</type>
+    <required><parameter name="Rate"/></required></implements></interfaces>
+  <dependencies><depends>IDL:boat/IWatcher</depends></dependencies>
+  <subcomponents><subcomponent>IDL:boat/ICourse</subcomponent></subcomponents>
+</component>)";
+
+const std::string kWatcher = R"(<component name="Watcher">
+  <interfaces><implements>IDL:boat/IWatcher</implements></interfaces>
+</component>)";
+
+const std::string kCareful = R"(<component name="CarefulCourse">
+  <interfaces><implements>IDL:boat/ICourse</implements></interfaces>
+</component>)";
+
+std::string content(const std::filesystem::path& file) {
+  return read_whole_file("the file", file, 1 << 20);
+}
+
+/// A folder with three components, and a mission that is composed there.
+class Desk {
+ public:
+  Desk() {
+    ::setenv("XDG_STATE_HOME", (folder.path() / "state").c_str(), 1);
+    folder.write("dictionary.xml", kDictionary);
+    folder.write("pilot.xml", kPilot);
+    folder.write("watcher.xml", kWatcher);
+    folder.write("careful.xml", kCareful);
+    folder.write("other.xml",
+                 "<mission name=\"other\" plugin=\"boats\"><peer name=\"p\" "
+                 "component=\"pilot.xml\"/></mission>");
+  }
+
+  void open() {
+    composer.reset();
+    composer.emplace(Composer::Options{file, {folder.path()}}, [](const auto&) {});
+  }
+
+  DesignState state() const { return idl::from_json<DesignState>(*composer->state()); }
+
+  std::string ask(const std::string& what, Json members = Json::object()) {
+    members["do"] = what;
+    if (!members.contains("version")) members["version"] = state().version;
+    return composer->obey(members.dump());
+  }
+
+  std::string component(const std::string& name) const { return (folder.path() / name).string(); }
+
+  void add(const std::string& name, Json members = Json::object()) {
+    members["component"] = component(name);
+    ask("add_entity", std::move(members));
+  }
+
+  std::int32_t element(const std::string& entity) const {
+    const DesignState now = state();
+    for (const PartState& part : now.parts)
+      if (part.entity == entity && part.csp.empty()) return part.element;
+    throw std::out_of_range(entity);
+  }
+
+  designer::EntityState entity(const std::string& name) const {
+    const DesignState now = state();
+    for (const auto& each : now.entities)
+      if (each.name == name) return each;
+    throw std::out_of_range(name);
+  }
+
+  std::vector<std::string> errors() const {
+    std::vector<std::string> problems;
+    const DesignState now = state();
+    for (const FindingState& finding : now.findings)
+      if (finding.severity == "error") problems.push_back(finding.problem);
+    return problems;
+  }
+
+  TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "mission.xml";
+  std::optional<Composer> composer;
+};
+
+}  // namespace
+
+TEST_CASE("a mission that is not there yet begins empty, and is there once it is saved") {
+  Desk desk;
+  desk.open();
+  CHECK(desk.state().changed);
+  CHECK(desk.errors() == std::vector<std::string>{"the mission has no <peer>"});
+  CHECK_FALSE(std::filesystem::exists(desk.file));
+  desk.ask("save");
+  CHECK(content(desk.file) ==
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<mission name=\"mission\">\n</mission>\n");
+  CHECK_FALSE(desk.state().changed);
+}
+
+TEST_CASE("what an entity lacks is told until it is there") {
+  Desk desk;
+  desk.open();
+  desk.add("pilot.xml");
+  CHECK_THAT(desk.state().text,
+             Contains("  <peer name=\"pilot\" component=\"pilot.xml\" plugin=\"boats\"/>\n"));
+  CHECK(desk.errors().size() == 3);  // the watcher, a CSP, the rate
+  CHECK(desk.entity("default/pilot").state == "incomplete");
+  CHECK(desk.entity("default/pilot").services[1].state == "needed");
+  CHECK(desk.entity("default/pilot").services[2].state == "slot");
+
+  desk.add("watcher.xml");
+  CHECK(desk.state().links.front().target == "default/watcher");
+  desk.ask("add_csp", {{"element", desk.element("default/pilot")},
+                       {"component", desk.component("careful.xml")}});
+  CHECK(desk.errors().size() == 1);
+  desk.ask("parameter",
+           {{"element", desk.element("default/pilot")}, {"name", "Rate"}, {"value", "100"}});
+  CHECK_THAT(desk.errors().at(0), Contains("100"));
+  desk.ask("parameter",
+           {{"element", desk.element("default/pilot")}, {"name", "Rate"}, {"value", "10"}});
+  CHECK(desk.errors().empty());
+  CHECK(desk.entity("default/pilot").state == "planned");
+  CHECK_THAT(desk.state().text,
+             Contains("    <csp component=\"careful.xml\" process=\"in\"/>\n"
+                      "    <parameter name=\"Rate\" value=\"10\"/>\n  </peer>\n"));
+}
+
+TEST_CASE("a second entity of a component has another name, and stands where it is dropped") {
+  Desk desk;
+  desk.open();
+  desk.add("watcher.xml");
+  desk.add("watcher.xml", {{"x", 300}, {"y", 40}});
+  CHECK(desk.entity("default/watcher_2").x == 300);
+  CHECK(desk.entity("default/watcher_2").y == 40);
+}
+
+TEST_CASE("only a CSP that fits can be added") {
+  Desk desk;
+  desk.open();
+  desk.add("pilot.xml");
+  desk.add("watcher.xml");
+  const auto add = [&](const std::string& entity, const std::string& csp) {
+    return desk.ask("add_csp",
+                    {{"element", desk.element(entity)}, {"component", desk.component(csp)}});
+  };
+  CHECK_THROWS_WITH(add("default/pilot", "watcher.xml"),
+                    Contains("Watcher does not fit peer pilot, whose CSPs implement boat/ICourse"));
+  CHECK_THROWS_WITH(add("default/watcher", "careful.xml"), Contains("which has no CSPs"));
+  add("default/pilot", "careful.xml");
+  add("default/pilot", "careful.xml");
+  CHECK_THAT(desk.state().text, Contains("name=\"careful_course\" process=\"in\""));
+}
+
+TEST_CASE(
+    "what the notation does not have is refused with a suggestion, and what is there can go") {
+  Desk desk;
+  desk.folder.write("mission.xml", "<mission name=\"m\"><peer nme=\"x\"/></mission>");
+  desk.open();
+  CHECK_THROWS_WITH(desk.ask("set", {{"element", 1}, {"attribute", "vendr"}, {"value", "x"}}),
+                    Contains("did you mean 'vendor'?"));
+  CHECK_THROWS_WITH(desk.ask("set", {{"element", 7}, {"attribute", "vendor"}, {"value", "x"}}),
+                    Contains("no such element"));
+  CHECK_THROWS_WITH(
+      desk.ask("add", {{"element", 1}, {"child", "group"}, {"attributes", Json::object()}}),
+      Contains("can stand in a peer"));
+  CHECK_THROWS_WITH(desk.ask("add_entity", {{"component", "/etc/passwd"}}), Contains("is known"));
+  desk.ask("set", {{"element", 1}, {"attribute", "nme"}, {"value", nullptr}});
+  desk.ask("add", {{"element", 0}, {"child", "variable"}, {"attributes", {{"name", "v"}}}});
+  CHECK(desk.state().text == "<mission name=\"m\"><peer/>\n  <variable name=\"v\"/>\n</mission>");
+}
+
+TEST_CASE("what is typed is undone at once, what is chosen one by one, and all is done again") {
+  Desk desk;
+  desk.folder.write("mission.xml", kMissionText);
+  desk.open();
+  const auto set = [&](const char* attribute, const char* value) {
+    desk.ask("set", {{"element", 2}, {"attribute", attribute}, {"value", value}});
+  };
+  for (const char* typed : {"f", "fa", "fast", "fastdds"}) set("vendor", typed);
+  set("host", "bow");
+  const std::string last = desk.state().text;
+  CHECK(desk.state().undo == "change host of peer pilot");
+  desk.ask("undo");
+  desk.ask("undo");
+  CHECK(desk.state().text == kMissionText);
+  CHECK_FALSE(desk.state().changed);
+  CHECK_THROWS_WITH(desk.ask("undo"), Contains("nothing to undo"));
+  desk.ask("redo");
+  desk.ask("redo");
+  CHECK(desk.state().text == last);
+  CHECK(desk.state().redo.empty());
+}
+
+TEST_CASE("an edit that was meant for an older text is refused") {
+  Desk desk;
+  desk.open();
+  const std::uint64_t version = desk.state().version;
+  desk.add("watcher.xml");
+  CHECK_THROWS_AS(desk.ask("remove", {{"element", 1}, {"version", version}}), Unavailable);
+}
+
+TEST_CASE("what others write meanwhile is told, never overwritten unasked, and can be taken") {
+  Desk desk;
+  desk.folder.write("mission.xml", kMissionText);
+  desk.open();
+  desk.ask("set", {{"element", 0}, {"attribute", "name"}, {"value", "mine"}});
+  const std::string theirs = "<mission name=\"theirs\"/>";
+  desk.folder.write("mission.xml", theirs);
+  desk.composer->look_at_disk();
+  CHECK(desk.state().disk == "changed");
+  CHECK_THROWS_WITH(desk.ask("save"), Contains("changed by somebody else"));
+  CHECK(content(desk.file) == theirs);
+  desk.ask("load");
+  CHECK(desk.state().text == theirs);
+  CHECK_FALSE(desk.state().changed);
+  desk.ask("undo");
+  CHECK_THAT(desk.state().text, Contains("name=\"mine\""));
+  desk.folder.write("mission.xml", "<mission name=\"again\"/>");
+  desk.ask("save", {{"over", true}});
+  CHECK_THAT(content(desk.file), Contains("name=\"mine\""));
+  std::filesystem::remove(desk.file);
+  desk.composer->look_at_disk();
+  CHECK(desk.state().disk == "gone");
+  desk.ask("save");
+  CHECK(std::filesystem::exists(desk.file));
+}
+
+TEST_CASE("where boxes stand is kept, and is no change of the mission") {
+  Desk desk;
+  desk.open();
+  desk.add("watcher.xml");
+  desk.ask("save");
+  const std::string saved = content(desk.file);
+  desk.ask("move", {{"entity", "default/watcher"}, {"x", 17}, {"y", -4}});
+  CHECK_FALSE(desk.state().changed);
+  desk.ask("set", {{"element", 1}, {"attribute", "name"}, {"value", "lookout"}});
+  CHECK(desk.entity("default/lookout").x == 17);
+  desk.ask("undo");
+  CHECK(desk.entity("default/watcher").x == 17);
+  desk.open();
+  CHECK(desk.entity("default/watcher").x == 17);
+  CHECK(desk.entity("default/watcher").y == -4);
+  CHECK(content(desk.file) == saved);
+}
+
+TEST_CASE("while the text is no XML, boxes stay, and nothing else than the text changes") {
+  Desk desk;
+  desk.open();
+  desk.add("watcher.xml");
+  const std::string good = desk.state().text;
+  desk.ask("text", {{"text", good + "<"}});
+  CHECK(desk.entity("default/watcher").state == "planned");
+  CHECK_THAT(desk.errors().at(0), Contains("malformed XML"));
+  CHECK_THROWS_WITH(desk.ask("remove", {{"element", 1}}), Contains("no well-formed XML"));
+  desk.ask("undo");
+  CHECK(desk.state().text == good);
+  CHECK(desk.element("default/watcher") == 1);
+}
+
+TEST_CASE("what was not saved is there again when the program ends, however it does") {
+  Desk desk;
+  desk.folder.write("mission.xml", kMissionText);
+  desk.open();
+  desk.ask("set", {{"element", 0}, {"attribute", "name"}, {"value", "mine"}});
+  const std::string unsaved = desk.state().text;
+  desk.open();
+  CHECK(desk.state().text == unsaved);
+  CHECK(desk.state().undo == "take up what was not saved");
+  desk.ask("save");
+  desk.open();
+  CHECK(desk.state().undo.empty());
+}
+
+TEST_CASE("entities of a part of the profile are shown, and belong to another file") {
+  Desk desk;
+  desk.folder.write("part.xml", "<part><peer name=\"w\" component=\"watcher.xml\"/></part>");
+  desk.folder.write("mission.xml", "<mission name=\"m\"><include file=\"part.xml\"/></mission>");
+  desk.open();
+  CHECK(desk.entity("default/w").state == "planned");
+  CHECK(desk.element("default/w") == -1);
+}
+
+TEST_CASE("components that cannot be read say why, and are not added") {
+  Desk desk;
+  desk.folder.write("broken.xml", "<component name=\"Broken\"><interface/></component>");
+  desk.open();
+  const DesignState state = desk.state();
+  const auto broken =
+      std::ranges::find(state.components, desk.component("broken.xml"), &ComponentState::file);
+  REQUIRE(broken != state.components.end());
+  CHECK_THAT(broken->failure, Contains("<interface> is unknown"));
+  CHECK_THROWS_AS(desk.add("broken.xml"), InvalidArgument);
+}
+
+TEST_CASE("any edits, undone, done again and saved, leave the text that they should") {
+  for (unsigned seed = 1; seed <= 30; ++seed) {
+    CAPTURE(seed);
+    std::mt19937 random(seed);
+    const auto any = [&](std::size_t below) { return static_cast<int>(random() % below); };
+    Desk desk;
+    desk.folder.write("mission.xml", kMissionText);
+    desk.open();
+    std::vector<std::string> texts{kMissionText};  // what undo goes back through
+    std::size_t now = 0;
+    std::string saved = kMissionText;
+    const auto edit = [&](const std::string& what, const Json& members) {
+      const std::string before = desk.state().text;
+      try {
+        desk.ask(what, members);
+      } catch (const InvalidArgument&) {  // that cannot be done there
+        CHECK(desk.state().text == before);
+        return;
+      }
+      const std::string after = desk.state().text;
+      if (after == before) return;
+      texts.resize(++now);
+      texts.push_back(after);
+    };
+    for (int step = 0; step < 40; ++step) {
+      const int elements = static_cast<int>(desk.state().elements.size());
+      switch (any(9)) {
+        case 0:
+          desk.add("pilot.xml"), texts.resize(++now), texts.push_back(desk.state().text);
+          break;
+        case 1:
+          edit("add_csp",
+               {{"element", any(elements)}, {"component", desk.component("careful.xml")}});
+          break;
+        case 2:
+          edit("remove", {{"element", any(elements)}});
+          break;
+        case 3:
+          edit("add",
+               {{"element", any(elements)}, {"child", "topic"}, {"attributes", {{"name", "a&b"}}}});
+          break;
+        case 4: {  // with another attribute between, so that none is one with the one before
+          const std::string name = step % 2 == 0 ? "host" : "plugin";
+          edit("set",
+               {{"element", any(elements)}, {"attribute", name}, {"value", std::to_string(step)}});
+          break;
+        }
+        case 5:
+          edit("parameter",
+               {{"element", any(elements)}, {"name", "P" + std::to_string(step)}, {"value", "1"}});
+          break;
+        case 6:
+          if (now > 0) desk.ask("undo"), --now;
+          break;
+        case 7:
+          if (now + 1 < texts.size()) desk.ask("redo"), ++now;
+          break;
+        default:
+          desk.ask("save"), saved = texts[now];
+      }
+      REQUIRE(desk.state().text == texts[now]);
+      REQUIRE(content(desk.file) == saved);
+      CHECK(desk.state().changed == (texts[now] != saved));
+    }
+    while (now > 0) desk.ask("undo"), --now;
+    CHECK(desk.state().text == kMissionText);
+  }
+}
