@@ -1,57 +1,23 @@
-// The page of `skein designer` in Chromium, over the reconnaissance mission: page_test.mjs SKEIN SOURCES.
+// The page of `skein designer` in Chromium, while the reconnaissance mission flies, and over what was recorded of it.
 import assert from "node:assert/strict";
-import { spawn } from "node:child_process";
-import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import http from "node:http";
-import { createRequire } from "node:module";
 import net from "node:net";
-import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { chromium } from "playwright-core";
 import WebSocket from "ws";
+import { complaints, demandAccessible, endAll, folder, openBrowser, openPage, run, runDesigner, sources, token, until } from "./page_tools.mjs";
 
-const [skein, sources] = process.argv.slice(-2);
-const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core"), "utf8");
-const token = "0123456789abcdef0123";
-const patience = 60_000; // that only a broken program exhausts
 const mission = `${sources}/mission_profiles/reconnaissance/reconnaissance.xml`;
 const choice = ["--variable", "domain=31", "--variable", "speed_limit=8"];
 const navigator = "uav-1/navigator";
 
-/** Where missions leave what they write. */
-const folder = mkdtempSync(join(tmpdir(), "skein-page-"));
-/** Processes that end with the test. @type {Set<import("node:child_process").ChildProcess>} */
-const running = new Set();
-let browser, page, designer, port;
-/** What went wrong in the page. @type {string[]} */
-const complaints = [];
-
-function run(...words) {
-  const child = spawn(skein, words, { env: { ...process.env, SKEIN_DESIGNER_TOKEN: token }, stdio: ["ignore", "pipe", "inherit"], cwd: folder });
-  running.add(child);
-  child.ended = new Promise((resolve) => child.on("exit", (code, signal) => {
-    running.delete(child);
-    resolve(code ?? signal);
-  }));
-  child.stdout.on("data", (text) => { child.said = (child.said ?? "") + text; });
-  return child;
-}
+let browser, page, designer, port, launched, recorder;
 
 const launch = () => run("launch", mission, "--no-log", ...choice);
 
 async function startDesigner(at) {
-  designer = run("designer", "--watch", "--profile", mission, ...choice.slice(0, 2), "--faults", "--no-browser", "--port", String(at));
-  await until(() => designer.said?.includes("http://"));
-  port = Number(designer.said.match(/127\.0\.0\.1:(\d+)/)[1]);
-}
-
-async function until(holds) {
-  const end = Date.now() + patience;
-  while (!(await holds())) {
-    assert(Date.now() < end, `not in time: ${holds}`);
-    await new Promise((resolve) => setTimeout(resolve, 50));
-  }
+  designer = await runDesigner("--watch", "--profile", mission, ...choice.slice(0, 2), "--faults", "--port", String(at));
+  port = Number(designer.url.match(/127\.0\.0\.1:(\d+)/)[1]);
 }
 
 const stateTime = () => page.evaluate(async () => (await (await fetch("state.json")).json()).time);
@@ -69,19 +35,14 @@ const pids = () => page.evaluate(async () => (await (await fetch("state.json")).
   .then((services) => Object.fromEntries(services.map((each) => [each.csp, each.pid])));
 
 before(async () => {
-  browser = await chromium.launch({ executablePath: "/usr/bin/chromium", args: ["--no-sandbox"] });
-  page = await browser.newPage({ viewport: { width: 1366, height: 768 } });
-  page.on("pageerror", (error) => complaints.push(error.stack ?? error.message));
-  page.on("console", (message) => message.type() === "error" && complaints.push(message.text()));
+  browser = await openBrowser();
+  page = await openPage(browser);
   await startDesigner(0);
 });
 
 after(async () => {
   await browser?.close();
-  const left = [...running];
-  for (const child of left) child.kill("SIGTERM");
-  await Promise.all(left.map((child) => child.ended));
-  rmSync(folder, { recursive: true, force: true });
+  await endAll();
 });
 
 test("before anybody is there, the plan is shown as missing", async () => {
@@ -93,8 +54,8 @@ test("before anybody is there, the plan is shown as missing", async () => {
 });
 
 test("the mission starts, and all thirteen are ready in one view", async () => {
-  running.mission = launch();
-  running.recorder = run("record", "--domain", "31", "--output", join(folder, "flight.mcap"));
+  launched = launch();
+  recorder = run("record", "--domain", "31", "--output", join(folder, "flight.mcap"));
   await until(async () => (await readyBoxes()) === 13);
   await page.locator("#fit").click();
   const canvas = await page.locator("#canvas").boundingBox();
@@ -186,9 +147,7 @@ test("who cannot see finds nothing missing", async () => {
     // Decisions, of which there are many, take long: one look at them will do.
     for (const name of table ? ["Mission"] : scheme === "dark" ? ["Details"] : ["Decisions", "Details", "Mission", "Log"]) {
       await page.getByRole("tab", { name }).click();
-      await page.evaluate(axe);
-      const found = await page.evaluate(() => axe.run(document, { runOnly: ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "best-practice"] }));
-      assert.deepEqual(found.violations.map((each) => `${each.id}: ${each.nodes[0].html}: ${each.nodes[0].failureSummary}`), []);
+      await demandAccessible(page);
     }
   }
   await page.locator("table").first().waitFor();
@@ -245,11 +204,11 @@ test("a process that hangs is said to, with what it had, and goes on when it is 
 });
 
 test("the launcher dies, and the page says what is gone; a new one is found", async () => {
-  running.mission.kill("SIGKILL");
+  launched.kill("SIGKILL");
   await until(async () => (await readyBoxes()) === 0);
   await page.getByRole("tab", { name: "Mission" }).click();
   await page.getByText("has ended: its launcher is gone").waitFor();
-  running.mission = launch();
+  launched = launch();
   await until(async () => (await readyBoxes()) === 13);
   await page.getByRole("button", { name: "Stop the mission" }).waitFor();
 });
@@ -294,7 +253,7 @@ test("the mission is stopped from the page", async () => {
   await page.getByRole("button", { name: "Stop the mission" }).click();
   await page.getByRole("button", { name: "Yes" }).click();
   await page.getByText("the mission is being ended").waitFor();
-  assert.equal(await running.mission.ended, 143);
+  assert.equal(await launched.ended, 143);
   await until(async () => (await readyBoxes()) === 0);
 });
 
@@ -321,11 +280,10 @@ test("two fingers zoom, and one moves the drawing", async () => {
 });
 
 test("the recording is replayed on the same page", async () => {
-  running.recorder.kill("SIGINT");
-  assert.equal(await running.recorder.ended, 0);
-  const player = run("designer", "--replay", join(folder, "flight.mcap"), "--no-browser", "--port", "0");
-  await until(() => player.said?.includes("http://"));
-  await page.goto(player.said.match(/http:\S+/)[0]);
+  recorder.kill("SIGINT");
+  assert.equal(await recorder.ended, 0);
+  const player = await runDesigner("--replay", join(folder, "flight.mcap"));
+  await page.goto(player.url);
   await page.locator(".box").first().waitFor();
   const places = () => page.evaluate(() => Object.fromEntries(
     [...document.querySelectorAll(".box")].map((each) => [each.dataset.id, each.style.transform])));
@@ -353,9 +311,7 @@ test("the recording is replayed on the same page", async () => {
   await page.locator("#play", { hasText: "Pause" }).waitFor();
   await page.locator("#play", { hasText: "Play" }).waitFor();
   assert.match(await page.locator("#now").textContent(), /after the start/);
-  await page.evaluate(axe);
-  const found = await page.evaluate(() => axe.run(document));
-  assert.deepEqual(found.violations.map((each) => `${each.id}: ${each.nodes[0].html}`), []);
+  await demandAccessible(page);
   player.kill("SIGINT");
   assert.equal(await player.ended, 0);
 });

@@ -104,7 +104,7 @@ export class Canvas {
   update(element, box) {
     const entity = box.entity;
     set(element, "class", `box ${tone(box.state)} ${box.state}${box.id === this.selected ? " selected" : ""}` +
-      `${this.state && isFound(box, this.state, this.view.search) ? " found" : ""}${entity ? "" : " system"}`);
+      `${this.state && isFound(box, this.state, this.view.search) ? " found" : ""}${entity ? "" : " system"}${entity?.mark ? ` marked-${entity.mark}` : ""}`);
     this.placeBox(element, box);
     const head = /** @type {HTMLElement} */ (element.firstElementChild);
     const name = entity ? short(entity.name) : `${box.id} (${box.members.length} entities)`;
@@ -226,6 +226,12 @@ export class Canvas {
     this.isPlaced = true;
     this.pan = { zoom, x: at.x - (at.x - this.pan.x) * grown, y: at.y - (at.y - this.pan.y) * grown };
     this.applyPan();
+  }
+
+  /** A point of the screen in the drawing. @param {number} x @param {number} y */
+  at(x, y) {
+    const corner = this.root.getBoundingClientRect();
+    return { x: Math.round((x - corner.x - this.pan.x) / this.pan.zoom), y: Math.round((y - corner.y - this.pan.y) / this.pan.zoom) };
   }
 
   /** @param {WheelEvent} event */
@@ -397,9 +403,10 @@ function updateRow(row, service, chosen) {
   set(row, "class", `${service.csp ? "csp" : "service"} ${tone(service.state)} ${service.state}${chosen ? " chosen" : ""}`);
   const isGood = chosen === "Accepted" || chosen === "Preselected";
   setText(row.children[0], chosen ? (isGood ? "✓" : "✗") : "");
-  setText(row.children[1], service.csp || short(service.name));
+  const absent = service.state === "slot" ? "no CSP for " : service.state === "needed" ? "needs " : "";
+  setText(row.children[1], absent + (service.csp || short(service.name)));
   const busy = service.calls.length && service.calls[0] > 0 ? rate(service.calls) : "";
-  setText(row.children[2], service.state === "ready" ? busy : service.state);
+  setText(row.children[2], service.state === "ready" ? busy : service.state === "planned" || absent ? "" : service.state);
   set(row.children[0], "class", `mark${chosen && !isGood ? " failed" : ""}`);
   set(row, "title", [service.csp ? `CSP ${service.csp} of ${service.name}` : `service ${service.name}`, stateText(service),
     latency(service), chosen && `in the last decision: ${outcome(chosen)}`].filter(Boolean).join("\n"));
@@ -408,6 +415,7 @@ function updateRow(row, service, chosen) {
 /** In two lines. @param {Line} line @returns {string[]} */
 function labelOf(line) {
   const first = line.links[0];
+  if (line.state === "planned") return [line.links.map((each) => short(each.name)).join(", ")];
   if (line.state !== "ready") return [`${short(first.name)}: ${line.state}`];
   const name = line.kind === "Calls" ? short(first.name) : first.name;
   const more = line.links.length > 1 ? ` +${line.links.length - 1}` : "";

@@ -1,8 +1,11 @@
 // The page of `skein designer`: shows what the server tells, and asks it for what the user wants.
 import { set, setText } from "./element.js";
 import { Canvas } from "./canvas.js";
+import { Composer } from "./compose.js";
+import { pictureOf } from "./design.js";
 import { Panel } from "./panel.js";
 import { replay } from "./replay.js";
+import { Schema } from "./schema.js";
 import { isFound, sharedTopics } from "./state.js";
 import { showTables } from "./table.js";
 import { clock, counted } from "./words.js";
@@ -18,6 +21,8 @@ const view = { values: true, shared: false, folded: new Set(), search: "" };
 let state = null;
 let selected = "";
 let asTable = false;
+/** What is drawn: the state, or the plan. @type {import("./state.js").DomainState|null} */
+let shown = null;
 let drawn = false;
 let heard = 0;
 
@@ -53,9 +58,9 @@ function connect() {
     const message = JSON.parse(event.data);
     retry = firstRetry;
     if ("request" in message) return end(message.request, message.done, message.text);
-    state = message;
+    if ("elements" in message) return void showDesign(message);
     heard = Date.now();
-    drawSoon();
+    showState(message);
   };
   socket.onclose = () => {
     for (const request of [...requests.keys()]) end(request, false, "the connection to skein designer has ended");
@@ -82,13 +87,47 @@ let isReplay = false;
 /** Says so if what is shown is old. */
 function tellConnection() {
   const text = isReplay ? damage : socket?.readyState === WebSocket.OPEN || socket?.readyState === WebSocket.CONNECTING && !state
-    ? state && Date.now() - heard > oldAfter ? `No news since ${clock(heard * 1e6)}.` : ""
+    ? state && (!design || watches) && Date.now() - heard > oldAfter ? `No news since ${clock(heard * 1e6)}.` : ""
     : isStranger ? "skein designer was started anew, with another URL: open that one."
     : `There is no connection to skein designer${state ? `; this is of ${clock(state.time)}` : ""}. Trying again…`;
-  const all = [text, ...(state?.troubles ?? [])].filter(Boolean).join(" · ");
+  const all = [text, ...((watches ? state : design ?? state)?.troubles ?? [])].filter(Boolean).join(" · ");
   setText($("bar"), all);
   set($("bar"), "hidden", !all);
   document.body.classList.toggle("stale", Boolean(text));
+}
+
+/** @param {import("./state.js").DomainState} told */
+function showState(told) {
+  state = told;
+  drawSoon();
+}
+
+/** The mission that is composed; null: none is. @type {import("./design.js").DesignState|null} */
+let design = null;
+/** @type {Composer|null} */
+let composer = null;
+/** @type {Promise<string>|null} */
+let schema = null;
+/** Whether the mission is shown as it flies, though one is composed. */
+let watches = false;
+
+/** @param {import("./design.js").DesignState} told */
+async function showDesign(told) {
+  design = told;
+  document.body.classList.add("designing");
+  schema ??= fetch("mission.xsd").then((answer) => answer.text());
+  const text = await schema;
+  composer ??= new Composer(ask, canvas, new Schema(text), select, watch);
+  if (composer.design !== design) composer.show(design, selected);
+  drawSoon();
+}
+
+/** @param {boolean} wanted */
+function watch(wanted) {
+  watches = wanted;
+  set($("watch"), "aria-pressed", String(watches));
+  canvas.isPlaced = false;
+  drawSoon();
 }
 
 function drawSoon() {
@@ -99,11 +138,20 @@ function drawSoon() {
 function draw() {
   drawn = false;
   tellConnection();
-  if (!state) return;
-  summarize(state);
-  if (asTable) showTables($("tables"), state, view.search, select);
-  else canvas.show(state, selected);
-  panel.show(state, selected);
+  const isPlan = design !== null && !watches;
+  document.body.classList.toggle("compose", isPlan);
+  set($("composing"), "hidden", !isPlan);
+  set($("panel"), "hidden", isPlan);
+  shown = isPlan && design ? pictureOf(design) : state;
+  if (!shown) return;
+  if (!isPlan) summarize(shown);
+  setText($("empty"), isPlan ? "Nothing is here yet. Add a component from the list." : "Nobody is on this domain yet. When a mission starts, it appears here.");
+  set($("empty"), "hidden", shown.entities.length > 0);
+  if (asTable) showTables($("tables"), shown, view.search, select);
+  else canvas.show(shown, selected);
+  if (isPlan && design) return composer?.show(design, selected);
+  panel ??= new Panel($("panel"), ask, select);
+  panel.show(shown, selected);
 }
 
 /** @param {import("./state.js").DomainState} state */
@@ -116,7 +164,6 @@ function summarize(state) {
   setText($("summary"), `${state.place}: ${degraded}${state.entities.length === 1 ? "1 entity" : `${state.entities.length} entities`}` +
     `${wrong.length ? `, ${wrong.length} not ready` : ""}${state.plan ? `, planned by ${state.plan.slice(state.plan.lastIndexOf("/") + 1)}` : ""}${foundText()}`);
   set($("summary"), "title", state.plan);
-  set($("empty"), "hidden", state.entities.length > 0);
   const shared = sharedTopics(state);
   set($("shared"), "hidden", shared.size === 0);
   setText($("shared"), `+ ${counted(shared.size, "shared topic")}`);
@@ -125,13 +172,12 @@ function summarize(state) {
 /** What the search has found, in words. */
 function foundText() {
   if (!view.search.trim() || asTable) return "";
-  return `; ${canvas.boxes.filter((box) => state && isFound(box, state, view.search)).length} with '${view.search.trim()}'`;
+  return `; ${canvas.boxes.filter((box) => shown && isFound(box, shown, view.search)).length} with '${view.search.trim()}'`;
 }
 
 /** @param {string} id */
 function select(id) {
   selected = id;
-  if (id && panel.tab === "Mission") panel.open("Details");
   drawSoon();
 }
 
@@ -141,7 +187,7 @@ function fold(id) {
   else view.folded.add(id);
   draw();
   const isSystem = id.endsWith("/");
-  canvas.focus(isSystem && !view.folded.has(id) ? state?.entities.find((each) => `${each.system}/` === id)?.name ?? "" : id);
+  canvas.focus(isSystem && !view.folded.has(id) ? shown?.entities.find((each) => `${each.system}/` === id)?.name ?? "" : id);
 }
 
 /** @param {string} id @param {() => boolean} flip */
@@ -152,12 +198,17 @@ function toggle(id, flip) {
   };
 }
 
-const panel = new Panel($("panel"), ask, select);
+/** @type {Panel|null} */
+let panel = null;
 const canvas = new Canvas($("canvas"), view, {
   select, fold, move: (entity, x, y) => ask("move", { entity, x, y }).catch(() => undefined), // a recording keeps nothing
 });
 toggle("values", () => (view.values = !view.values));
 toggle("shared", () => (view.shared = !view.shared));
+$("watch").onclick = () => {
+  if (!watches) ask("watch", {}).catch(() => undefined); // the bar tells that there is no connection
+  watch(!watches);
+};
 toggle("as-table", () => {
   asTable = !asTable;
   set($("tables"), "hidden", !asTable);
@@ -178,8 +229,8 @@ search.oninput = () => {
   drawSoon();
 };
 search.onkeydown = (/** @type {KeyboardEvent} */ event) => {
-  if (event.key !== "Enter" || !state) return;
-  const rank = (/** @type {import("./state.js").Box} */ box) => (state ? isFound(box, state, view.search) : 0);
+  if (event.key !== "Enter" || !shown) return;
+  const rank = (/** @type {import("./state.js").Box} */ box) => (shown ? isFound(box, shown, view.search) : 0);
   const best = [...canvas.boxes].sort((a, b) => rank(b) - rank(a))[0];
   if (best && rank(best)) canvas.focus(best.id);
 };
@@ -188,18 +239,12 @@ document.addEventListener("keydown", (event) => {
 });
 setInterval(tellConnection, 1000);
 
-/** @param {import("./state.js").DomainState} recorded */
-function showRecorded(recorded) {
-  state = recorded;
-  drawSoon();
-}
-
 const recording = await (await fetch("times.json")).json();
 isReplay = recording !== null;
 document.body.classList.toggle("replay", isReplay);
 if (isReplay) {
   canvas.patience = Infinity;
-  replay(recording.times, showRecorded, (text) => {
+  replay(recording.times, showState, (text) => {
     damage = text;
     tellConnection();
   });

@@ -1,5 +1,6 @@
 // What is known of one thing, and what can be done to it.
 import { h, set, setText, sync } from "./element.js";
+import { Tabs } from "./tabs.js";
 import { clock, counted, digits, latency, often, outcome, rate, short, size, stateText, time, tone } from "./words.js";
 
 /** @typedef {import("./state.js").DomainState} DomainState */
@@ -10,7 +11,6 @@ import { clock, counted, digits, latency, often, outcome, rate, short, size, sta
 /** @typedef {import("./state.js").DecisionNote} DecisionNote */
 /** @typedef {(what: string, members: Record<string, any>) => Promise<string>} Ask */
 
-const tabs = ["Details", "Mission", "Decisions", "Log"];
 const mostDecisions = 100;
 const levels = ["debug", "info", "warning", "error"];
 
@@ -19,7 +19,6 @@ export class Panel {
   constructor(root, ask, select) {
     this.ask = ask;
     this.select = select;
-    this.tab = "Details";
     /** @type {DomainState|null} */
     this.state = null;
     this.selected = "";
@@ -28,53 +27,28 @@ export class Panel {
     /** @type {ReturnType<typeof setTimeout>|undefined} */
     this.forget = undefined;
     this.level = "info";
-    this.buttons = tabs.map((name) => h("button", {
-      type: "button", role: "tab", id: `tab-${name}`, "aria-controls": `page-${name}`, onclick: () => this.open(name),
-      onkeydown: (/** @type {KeyboardEvent} */ event) => this.key(event),
-    }, name));
-    this.pages = tabs.map((name) => h("div", { role: "tabpanel", id: `page-${name}`, "aria-labelledby": `tab-${name}`, tabindex: "0" }));
     this.answer = h("p", { class: "answer", role: "status" });
-    root.append(h("div", { role: "tablist", "aria-label": "Details" }, ...this.buttons), this.answer, ...this.pages);
-    this.open(this.tab);
-  }
-
-  /** @param {string} name */
-  open(name) {
-    this.tab = name;
-    tabs.forEach((each, i) => {
-      set(this.buttons[i], "aria-selected", String(each === name));
-      set(this.buttons[i], "tabindex", each === name ? "0" : "-1");
-      set(this.pages[i], "hidden", each !== name);
-    });
-    this.draw();
-  }
-
-  /** @param {KeyboardEvent} event */
-  key(event) {
-    const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
-    if (!step) return;
-    const next = (tabs.indexOf(this.tab) + step + tabs.length) % tabs.length;
-    this.open(tabs[next]);
-    this.buttons[next].focus();
+    this.tabs = new Tabs(root, "Details", ["Details", "Mission", "Decisions", "Log"], () => this.draw(), this.answer);
   }
 
   /** @param {DomainState} state @param {string} selected A box or a line. */
   show(state, selected) {
-    if (selected !== this.selected && selected && this.tab === "Mission") this.open("Details");
+    const isNew = selected !== this.selected && selected;
     this.state = state;
     this.selected = selected;
-    this.draw();
+    if (isNew && this.tabs.open === "Mission") this.tabs.show("Details");
+    else this.draw();
   }
 
   draw() {
     if (!this.state) return;
-    const page = this.pages[tabs.indexOf(this.tab)];
-    if (this.tab === "Details") this.details(page);
-    if (this.tab === "Mission") this.missions(page);
+    const open = this.tabs.open, page = this.tabs.page(open);
+    if (open === "Details") this.details(page);
+    if (open === "Mission") this.missions(page);
     for (const note of this.state.decisions) this.history.set(keyOf(note), note);
     for (const key of [...this.history.keys()].slice(0, -mostDecisions)) this.history.delete(key);
-    if (this.tab === "Decisions") this.decisions(page);
-    if (this.tab === "Log") this.log(page);
+    if (open === "Decisions") this.decisions(page);
+    if (open === "Log") this.log(page);
   }
 
   /** Whether something of an entity is shown: all is, while none is selected. @param {string} entity */

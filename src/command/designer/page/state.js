@@ -4,7 +4,7 @@
  *   calls: number[], failed: number[], waiting: number, running: number, p50: number, p99: number}} ServiceState */
 /** @typedef {{name: string, system: string, state: string, reason: string, process: string, launcher: number, pid: number,
  *   host: string, program: string, vendor: string, version: string, cpu: number[], memory: number, threads: number,
- *   services: ServiceState[], x: number, y: number, width: number, height: number}} EntityState */
+ *   services: ServiceState[], x: number, y: number, width: number, height: number, mark?: string}} EntityState */
 /** @typedef {{source: string, target: string, kind: "Calls"|"Values", name: string, state: string, transport: string,
  *   reason: string, total: number, rate: number[], p50: number, p99: number}} Link */
 /** @typedef {{entity: string, number: number, time: number, request: string, service: string, took: number, failure: string,
@@ -33,10 +33,10 @@ const fewLinks = 5;
 
 /** @param {EntityState[]} members @returns {{state: string, reason: string}} */
 function worst(members) {
-  const order = ["ready", "ended", "unplanned", "idle", "starting", "waiting"];
+  const order = ["ready", "planned", "ended", "unplanned", "idle", "starting", "waiting"];
   const rank = (/** @type {EntityState} */ entity) => (order.indexOf(entity.state) + order.length + 1) % (order.length + 1);
   const most = members.reduce((one, other) => (rank(other) > rank(one) ? other : one));
-  return most.state === "ready" ? most : { state: most.state, reason: `${most.name}: ${most.reason}` };
+  return ["ready", "planned"].includes(most.state) ? most : { state: most.state, reason: `${most.name}: ${most.reason}` };
 }
 
 /** @param {DomainState} state @param {View} view @returns {Box[]} */

@@ -49,9 +49,9 @@ export function short(name) {
 
 /** Which of the page's four colours a state has. @param {string} state @returns {"good"|"busy"|"bad"|"off"} */
 export function tone(state) {
-  if (state === "ready") return "good";
+  if (state === "ready" || state === "planned") return "good";
   if (["starting", "waiting", "idle", "interrupted", "terminated", "unplanned"].includes(state)) return "busy";
-  return state === "ended" || state === "unused" ? "off" : "bad";
+  return ["ended", "unused", "removed"].includes(state) ? "off" : "bad";
 }
 
 /** @param {{state: string, reason: string}} of @returns {string} */
