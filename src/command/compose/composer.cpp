@@ -116,7 +116,7 @@ std::string Composer::edit(const nlohmann::json& request) {
   file_.history().edit(made.label, made.key, made.splice);
   refresh();
   place_new(request, made);
-  return made.label;
+  return "done: " + made.label;
 }
 
 std::string Composer::replace_text(const nlohmann::json& request) {

@@ -101,7 +101,16 @@ class DesignMaker {
     profile::SourcePosition where = finding.where;
     where.file = reference_to(whole_path(where.file), whole_path(file_).parent_path());
     design_.findings.push_back({std::string(to_string(finding.severity)), to_text(where),
-                                element_of(finding.where), finding.problem, finding.remedy});
+                                element_of(finding.where), with_short_paths(finding.problem),
+                                with_short_paths(finding.remedy)});
+  }
+
+  /// Of files beside the mission.
+  std::string with_short_paths(std::string text) const {
+    const std::string folder = file_.parent_path().string() + "/";
+    for (std::size_t at = 0; (at = text.find(folder, at)) != std::string::npos;)
+      text.erase(at, folder.size());
+    return text;
   }
 
   bool is_in(std::int32_t element, std::int32_t around) const {

@@ -89,7 +89,7 @@ const keyboard = {
 };
 
 /** The field of that name in a form. */
-const field = (form, name) => form.locator(`> div > .field`, { has: page.locator("label span").getByText(new RegExp(`^${name}( \\(required\\))?$`)) }).locator("input, select");
+const field = (form, name) => form.locator(`> div > .field`, { has: page.locator("label span").getByText(new RegExp(`^${name}( \\*)?$`)) }).locator("input, select");
 
 async function fill(person, form, name, value) {
   const input = field(form, name);
@@ -113,7 +113,7 @@ async function fillEntity(person, entity) {
     if (name === "on_loss" && entity[name]) await person.choose(form.locator("> .more .field", { hasText: "on_loss" }).locator("select"), entity[name]);
     else if (entity[name]) await fill(person, form, name, entity[name]);
   }
-  for (const { name, value } of entity.parameters) await person.enter(form.locator("> .parameters .field", { has: page.getByText(new RegExp(`^${name}( \\(required\\))?$`)) }).locator("input"), value);
+  for (const { name, value } of entity.parameters) await person.enter(form.locator("> .parameters .field", { has: page.getByText(new RegExp(`^${name}( \\*)?$`)) }).locator("input"), value);
   for (const [i, csp] of entity.csps.entries()) {
     const chooser = form.locator("> .csps > .acts");
     const option = await chooser.locator("option", { hasText: csp.component.slice(profiles.length) }).getAttribute("value");

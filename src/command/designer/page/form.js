@@ -9,8 +9,8 @@ import { short } from "./words.js";
 
 /** Those that the form of an entity or CSP shows in a way of their own, and those that are boxes. */
 const apart = new Set(["parameter", "csp", "peer"]);
-/** Of the schema's groups of attributes. */
-const usual = new Set(["system", "vendor", "host", "plugin", "restart"]);
+/** Of the many attributes of a mission, a group, an entity or a CSP. */
+const usual = new Set(["component", "name", "domain", "dictionary", "role", "process", "program", "system", "vendor", "host", "plugin", "restart"]);
 
 export class Form {
   /** @param {import("./schema.js").Schema} schema @param {Edit} edit */
@@ -41,7 +41,8 @@ export class Form {
   /** Fields that are not folded: those that most missions need, and those that had a value when the form was opened, so that none
    * moves while it is filled in. @param {Element} place @param {DesignState} design @param {number} element @param {import("./schema.js").Kind} kind */
   firstFields(place, design, element, kind) {
-    const known = this.first.get(place) ?? new Set(kind.fields.filter((field) => field.required || !field.group || usual.has(field.name) ||
+    const isLong = kind.fields.some((field) => field.group);
+    const known = this.first.get(place) ?? new Set(kind.fields.filter((field) => field.required || !isLong || usual.has(field.name) ||
       given(design, element, field.name) !== undefined).map((field) => field.name));
     this.first.set(place, known);
     return known;
@@ -140,7 +141,12 @@ export class Form {
   /** Elements in this one, each with its own form. A new one, without a name, is open. @param {Element} place @param {DesignState} design @param {number[]} elements */
   nested(place, design, elements) {
     const known = place.childElementCount > 0;
-    sync(place, elements.map((element, i) => ({ element, i })), ({ element, i }) => `${design.elements[element].name} ${i}`, ({ element }) => {
+    const counts = /** @type {Record<string, number>} */ ({});
+    const keyed = elements.map((element) => { // a CSP is the same as long as its component is
+      const kind = `${design.elements[element].name} ${design.parts.find((part) => part.element === element)?.description ?? ""}`;
+      return { element, key: `${kind} ${counts[kind] = (counts[kind] ?? 0) + 1}` };
+    });
+    sync(place, keyed, ({ key }) => key, ({ element }) => {
       const made = h("details", { open: known && !given(design, element, "name") && design.elements[element].name !== "csp" }, h("summary"), h("div"),
         h("p", { class: "acts" }, h("button", { type: "button", onclick: () => this.edit("remove", { element: Number(made.dataset.element) }) }, "Remove")));
       return made;
@@ -160,7 +166,8 @@ let lastHelp = 0;
 function row(name, input, help, required) {
   const id = `help-${(lastHelp += 1)}`;
   if (help) set(input, "aria-describedby", id);
-  return h("div", { class: "field", title: help }, h("label", {}, h("span", { class: required ? "required" : "" }, name, required ? " (required)" : ""), input),
+  if (required) set(input, "aria-required", "true");
+  return h("div", { class: "field", title: help }, h("label", {}, h("span", { class: required ? "required" : "" }, name, required ? h("span", { "aria-hidden": "true" }, " *") : null), input),
     help ? h("small", { id }, help) : null);
 }
 
