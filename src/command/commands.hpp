@@ -100,6 +100,7 @@ struct PlanArguments : MissionArguments {
 };
 
 struct CheckArguments : PlanArguments {
+  std::string text;  ///< A file with what the profile will hold; empty: what it holds.
   bool json = false;
 };
 

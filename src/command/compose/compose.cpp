@@ -16,6 +16,7 @@
 #include "command/print/start_program.hpp"
 #include "composer.hpp"
 #include "core/system/whole_file.hpp"
+#include "design.hpp"
 #include "flight.hpp"
 #include "mission/xml/notation.hpp"
 #include "skein/error.hpp"
@@ -41,7 +42,7 @@ fs::path installed_profiles() {
   return fs::path(own_program()).parent_path() / "../share/skein/mission_profiles";
 }
 
-Composer::Options options_of(const DesignerArguments& arguments) {
+Composer::Options composer_options(const DesignerArguments& arguments) {
   const fs::path given = fs::absolute(arguments.composed);
   Composer::Options options{compose::whole_path(given.parent_path()) / given.filename(),
                             {given.parent_path()},
@@ -53,6 +54,16 @@ Composer::Options options_of(const DesignerArguments& arguments) {
   return options;
 }
 
+/// Whether a start script may be written there: nothing is, or one that was.
+bool is_free(const fs::path& script) {
+  std::error_code ignored;
+  const fs::file_status status = fs::symlink_status(script, ignored);
+  if (!fs::exists(status)) return true;
+  return fs::is_regular_file(status) &&
+         read_whole_file("the script", script, std::size_t{1} << 20)
+                 .find("# Written by `skein script`.") != std::string::npos;
+}
+
 /// A mission that is composed, launched and watched on one page.
 class Workplace {
  public:
@@ -60,7 +71,7 @@ class Workplace {
       : arguments_(arguments),
         hub_(std::make_shared<PageHub>(
             PageHub::Obey{[this](std::string_view request) { return obey(request); }, may_wait})),
-        composer_(options_of(arguments), [this](const Composer::Json& state) {
+        composer_(composer_options(arguments), [this](const Composer::Json& state) {
           hub_->publish(PageHub::Kind::Design, state);
         }) {
     arguments_.profile = arguments.composed;
@@ -79,7 +90,9 @@ class Workplace {
         hub_);
     for (int tick = 0; !interruption.wait(kTickSeconds); ++tick) {
       if (wanted_.exchange(false)) watch(interruption);
-      if (tick % kTicksPerLook == 0) look();
+      if (tick % kTicksPerLook != 0) continue;
+      look();
+      if (hub_->is_watched()) check();
     }
     hub_->close();
   }
@@ -87,8 +100,8 @@ class Workplace {
  private:
   static bool may_wait(std::string_view text) {
     const auto request = nlohmann::json::parse(text, nullptr, false);
-    const std::string what = request.is_object() ? request.value("do", "") : "";
-    return what == "launch" || what == "script" || designer::asks_launcher(text);
+    if (!request.is_object() || !request.contains("do")) return false;
+    return request["do"] == "launch" || request["do"] == "script" || request.contains("launcher");
   }
 
   std::string obey(std::string_view text) {
@@ -121,6 +134,19 @@ class Workplace {
     return all;
   }
 
+  /// Has `skein check` look at the text, also at what only this machine tells, once it rests.
+  void check() {
+    const auto unchecked = composer_.unchecked();
+    if (!unchecked || unchecked->version != seen_) {
+      seen_ = unchecked ? unchecked->version : 0;
+      return;
+    }
+    auto command = words("check", composer_.mission());
+    command.insert(command.end(), {"--json", "--text", unchecked->file.string()});
+    const ProgramEnd end = run_program(command, kLongestCheck);
+    composer_.tell_check(unchecked->version, compose::findings_in(end.output));
+  }
+
   /// What the check refuses is not started.
   std::string launch() {
     const fs::path mission = composer_.saved_file();
@@ -137,10 +163,7 @@ class Workplace {
     fs::path script = composer_.saved_file();
     auto command = words("script", script);
     script.replace_extension(".sh");
-    std::error_code ignored;
-    if (fs::exists(script, ignored) &&
-        read_whole_file("the script", script, std::size_t{1} << 20).find("`skein script`") ==
-            std::string::npos)
+    if (!is_free(script))
       throw Unavailable(script.string() + " is there, and not by `skein script`: move it away");
     command.insert(command.end(), {"--output", script.string()});
     const ProgramEnd end = run_program(command, kLongestCheck);
@@ -159,7 +182,7 @@ class Workplace {
     std::lock_guard lock(mutex_);
     domain_ = std::move(domain);
   } catch (const Error& error) {
-    composer_.tell_flight(std::string("cannot be watched: ") + error.what());
+    composer_.tell_flight(compose::kUnwatched + std::string(error.what()));
   }
 
   void look() {
@@ -180,6 +203,7 @@ class Workplace {
   }
 
   DesignerArguments arguments_;
+  std::uint64_t seen_ = 0;           // the version of the text at the last look
   std::atomic<bool> wanted_{false};  // to watch the domain
   mutable std::mutex mutex_;         // of what follows
   std::shared_ptr<LiveDomain> domain_;

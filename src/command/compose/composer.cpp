@@ -9,6 +9,7 @@
 #include "differences.hpp"
 #include "edits.hpp"
 #include "mission/xml/text_file.hpp"
+#include "mission/xml/xml_text.hpp"
 #include "skein/detail/type_support.hpp"
 #include "skein/error.hpp"
 
@@ -18,6 +19,7 @@ namespace {
 using designer::number_of;
 using designer::text_of;
 
+constexpr const char* kTakenUp = "take up what was not saved";
 /// What a page may send, and so the largest text that it may compose.
 constexpr std::size_t kLongestText = 1 << 20;
 
@@ -49,15 +51,14 @@ const char* in_words(MissionFile::Disk disk) {
 Composer::Composer(const Options& options, Publish publish)
     : options_(options),
       publish_(std::move(publish)),
+      kept_(options.mission),
       repository_(looked(Repository(options.components))),
-      file_(options.mission, empty_mission(options.mission, repository_)),
-      kept_(options.mission) {
-  layout_.restore(kept_.read_places());
-  if (const auto draft = kept_.read_draft())
-    file_.history().edit("take up what was not saved", "",
-                         profile::difference(file_.text(), *draft));
+      file_(options.mission, empty_mission(options.mission, repository_)) {
+  remembered_ = kept_.read_places();
+  layout_.restore(remembered_);
+  if (const auto draft = kept_.read_draft()) file_.restore(draft->text, draft->base);
   refresh();
-  layout_.arrange(design_.entities, design_.links);
+  arrange();
   this->publish();
 }
 
@@ -65,7 +66,7 @@ std::string Composer::obey(std::string_view text) {
   const nlohmann::json request = designer::request_of(text);
   std::lock_guard lock(mutex_);
   std::string answer = carry_out(text_of(request, "do"), request);
-  layout_.arrange(design_.entities, design_.links);
+  arrange();
   keep();
   publish();
   return answer;
@@ -100,27 +101,41 @@ std::string Composer::carry_out(const std::string& what, const nlohmann::json& r
   }
   if (what == "arrange") {
     layout_.forget();
+    remembered_.clear();
     return "arranged";
   }
   return what == "text" ? replace_text(request) : edit(request);
 }
 
-std::string Composer::edit(const nlohmann::json& request) {
-  if (number_of(request, "version", 1e15) != static_cast<double>(design_.version))
+void Composer::demand_version(const nlohmann::json& request) const {
+  constexpr double kMost = 1e15;
+  if (number_of(request, "version", kMost) != static_cast<double>(design_.version))
     throw Unavailable("the mission was changed meanwhile; look at it, and try again");
+}
+
+std::string Composer::edit(const nlohmann::json& request) {
+  demand_version(request);
   if (!source_)
     throw Unavailable("the text is no well-formed XML: mend it first, under Text, or undo");
+  std::optional<designer::Place> at;
+  if (request.contains("x"))
+    at = {number_of(request, "x", designer::kFarthest),
+          number_of(request, "y", designer::kFarthest)};
   const Edit made = edit_of(request, {*source_, design_, repository_});
   const std::string after = profile::spliced(file_.text(), made.splice);
+  if (after.size() > profile::kLargestFile)
+    throw InvalidArgument("the mission would be larger than 8 MiB, which nobody reads");
   const profile::XmlSource demanded(after, options_.mission.string());
   file_.history().edit(made.label, made.key, made.splice);
   refresh();
-  place_new(request, made);
+  if (at) place_new(made, *at);
   return "done: " + made.label;
 }
 
 std::string Composer::replace_text(const nlohmann::json& request) {
+  demand_version(request);
   const std::string text = text_of(request, "text");
+  profile::demand_utf8_text(file_.text(), options_.mission.string());  // else a page cannot show it
   if (text.size() > kLongestText) throw InvalidArgument("the text is longer than 1 MiB");
   file_.history().edit("change the text", "text", profile::difference(file_.text(), text));
   refresh();
@@ -155,7 +170,7 @@ std::string Composer::compare(const nlohmann::json& request) {
 void Composer::find_differences() try {
   design_.compared = compared_.string();
   design_.differences.clear();
-  if (compared_.empty() || !source_) return;
+  if (compared_.empty() || !source_ || whole_path(compared_) != compared_) return;
   profile::FindingList findings;
   const auto before =
       profile::parse_xml(profile::read_text_file(compared_), compared_.string(), findings);
@@ -170,21 +185,25 @@ void Composer::find_differences() try {
 }
 
 /// Where the user has dropped it.
-void Composer::place_new(const nlohmann::json& request, const Edit& edit) {
-  if (!request.contains("x") || !source_) return;
+void Composer::place_new(const Edit& edit, designer::Place at) {
+  if (!source_) return;
   const std::size_t end = edit.splice.at + edit.splice.inserted.size();
   for (const PartState& part : design_.parts) {
     if (part.element == kNoElement || !part.csp.empty()) continue;
     const auto& element = source_->elements()[part.element];
     if (element.begin < edit.splice.at || element.end > end) continue;
-    layout_.place(part.entity, {number_of(request, "x", designer::kFarthest),
-                                number_of(request, "y", designer::kFarthest)});
+    layout_.place(part.entity, at);
   }
 }
 
 /// Makes what follows from the text anew. While it is no XML, boxes stay.
 void Composer::refresh() {
-  DesignState design = design_of(file_.text(), options_.mission, options_.variables, repository_);
+  if (design_.text != file_.text()) {
+    checked_.reset();
+    if (design_.flight.starts_with(kUnwatched)) design_.flight.clear();
+  }
+  DesignState design = design_of(file_.text(), options_.mission, options_.variables, repository_,
+                                 checked_ ? &*checked_ : nullptr);
   if (design.elements.empty()) {
     design.parts = std::move(design_.parts);
     design.entities = std::move(design_.entities);
@@ -212,16 +231,45 @@ void Composer::keep_names(const DesignState& before) {
   }
 }
 
+/// A box that comes again stands where it stood.
+void Composer::arrange() {
+  for (const auto& entity : design_.entities) {
+    const auto known = remembered_.find(entity.name);
+    if (known != remembered_.end() && !layout_.places().contains(entity.name))
+      layout_.place(entity.name, known->second);
+  }
+  layout_.arrange(design_.entities, design_.links);
+  for (const auto& [entity, place] : layout_.places()) remembered_[entity] = place;
+}
+
 /// What a user has done outlives this process, whatever ends it.
 void Composer::keep() {
   try {
     kept_.keep_places(layout_.places());
-    kept_.keep_draft(file_.is_changed() ? std::optional(file_.text()) : std::nullopt);
+    std::optional<KeptState::Draft> draft;
+    if (file_.is_changed()) draft = {file_.text(), file_.saved()};
+    kept_.keep_draft(draft);
     unkept_.clear();
   } catch (const Error& error) {
     unkept_ =
         std::string("what is not saved would be lost, and where boxes stand: ") + error.what();
   }
+}
+
+std::optional<Composer::Unchecked> Composer::unchecked() const {
+  std::lock_guard lock(mutex_);
+  const auto file = file_.is_changed() ? kept_.draft_file() : options_.mission;
+  if (checked_ || file.empty()) return std::nullopt;
+  return Unchecked{design_.version, file};
+}
+
+void Composer::tell_check(std::uint64_t version, std::vector<profile::Finding> findings) {
+  std::lock_guard lock(mutex_);
+  if (version != design_.version) return;
+  checked_ = std::move(findings);
+  refresh();
+  arrange();
+  publish();
 }
 
 void Composer::look_at_disk() {
@@ -252,12 +300,17 @@ Places Composer::places() const {
 void Composer::publish() {
   design_.file = options_.mission.string();
   design_.changed = file_.is_changed();
+  design_.checked = checked_.has_value();
   design_.disk = in_words(file_.disk());
   design_.undo = file_.history().undo_label();
   design_.redo = file_.history().redo_label();
   design_.troubles.clear();
   for (const std::string& trouble : repository_.troubles()) design_.troubles.push_back(trouble);
-  for (const std::string& trouble : {layout_.failure(), unkept_})
+  const bool taken_up = file_.history().undo_label() == kTakenUp;
+  for (const std::string& trouble :
+       {layout_.failure(), unkept_,
+        std::string(taken_up ? "what was not saved last time is here again; Undo takes the file"
+                             : "")})
     if (!trouble.empty()) design_.troubles.push_back(trouble);
   find_differences();
   state_ = std::make_shared<const std::string>(idl::to_json(design_));

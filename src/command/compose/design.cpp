@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <ranges>
 #include <set>
@@ -9,6 +10,7 @@
 #include "mission/check/profile_check.hpp"
 #include "mission/profile/composition.hpp"
 #include "mission/xml/xml_source.hpp"
+#include "skein/error.hpp"
 
 namespace skein::command::compose {
 namespace {
@@ -245,14 +247,31 @@ std::string reference_to(const fs::path& file, const fs::path& folder) {
   return way.empty() || up >= depth ? file.string() : way.string();
 }
 
-DesignState design_of(const std::string& text, const fs::path& file,
-                      const profile::VariableValues& values, const Repository& repository) {
+std::vector<profile::Finding> findings_in(const std::string& json) try {
   std::vector<profile::Finding> findings;
-  const auto mission = profile::check_text(text, file, findings, values);
+  for (const auto& each : nlohmann::json::parse(json)) {
+    profile::Finding& finding = findings.emplace_back();
+    finding.where = {each.at("file"), each.at("line"), each.at("column")};
+    for (const Severity severity : {Severity::Note, Severity::Warning, Severity::Error})
+      if (each.at("severity") == to_string(severity)) finding.severity = severity;
+    finding.problem = each.at("problem");
+    finding.remedy = each.at("remedy");
+  }
+  return findings;
+} catch (const nlohmann::json::exception&) {
+  throw Unavailable("`skein check` did not tell what it finds");
+}
+
+DesignState design_of(const std::string& text, const fs::path& file,
+                      const profile::VariableValues& values, const Repository& repository,
+                      const std::vector<profile::Finding>* checked) {
+  std::vector<profile::Finding> findings;
+  const auto mission = profile::read_and_check(file, findings, values, {}, &text);
+  if (checked) findings = *checked;
   std::optional<profile::XmlSource> source;
   try {
     source.emplace(text, file.string());
-  } catch (const profile::DescriptionError&) {  // check_text() has told
+  } catch (const profile::DescriptionError&) {  // which is among the findings
     DesignState broken;
     for (const auto& finding : findings)
       broken.findings.push_back({std::string(to_string(finding.severity)), to_text(finding.where),

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "design_state.idl.hpp"
 #include "mission/profile/mission_profile.hpp"
@@ -9,11 +10,16 @@
 
 namespace skein::command::compose {
 
-/// All of a DesignState that follows from the text of a mission: elements, findings as `skein
-/// check` has them without this machine's, entities without their places. Of text that is no
-/// well-formed XML, only the findings. Reads the files that the mission names.
+/// All of a DesignState that follows from the text of a mission: elements, findings, entities
+/// without their places. Of text that is no well-formed XML, only the findings. `checked`, unless
+/// null: those of `skein check`; without them, what it finds without looking at this machine. Reads
+/// the files that the mission names.
 DesignState design_of(const std::string& text, const std::filesystem::path& file,
-                      const profile::VariableValues& values, const Repository& repository);
+                      const profile::VariableValues& values, const Repository& repository,
+                      const std::vector<profile::Finding>* checked = nullptr);
+
+/// What `skein check --json` has printed. Throws Unavailable for anything else.
+std::vector<profile::Finding> findings_in(const std::string& json);
 
 /// How a mission in that folder names a file: relatively, unless they have nothing in common.
 std::string reference_to(const std::filesystem::path& file, const std::filesystem::path& folder);

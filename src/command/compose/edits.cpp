@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -44,7 +45,8 @@ class EditMaker {
   std::size_t element() const {
     constexpr double kMost = 1e6;
     const double number = designer::number_of(request_, "element", kMost);
-    if (number >= 0 && number < static_cast<double>(source_.elements().size()))
+    if (number >= 0 && number < static_cast<double>(source_.elements().size()) &&
+        number == std::floor(number))
       return static_cast<std::size_t>(number);
     throw InvalidArgument("the mission has no such element");
   }

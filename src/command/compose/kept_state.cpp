@@ -1,5 +1,9 @@
 #include "kept_state.hpp"
 
+#include <fcntl.h>
+#include <sys/file.h>
+
+#include <cerrno>
 #include <nlohmann/json.hpp>
 
 #include "core/system/state_folder.hpp"
@@ -45,7 +49,19 @@ Places KeptState::read_places() const {
   return places;
 }
 
-std::optional<std::string> KeptState::read_draft() const { return read(file("drafts")); }
+KeptState::KeptState(fs::path mission) : mission_(std::move(mission)) {
+  const fs::path lock = file("locks");
+  std::error_code failure;
+  if (lock.empty() || (fs::create_directories(lock.parent_path(), failure), failure)) return;
+  lock_ = FileDescriptor(::open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK, 0600));
+  if (lock_ && ::flock(lock_.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
+    throw Unavailable("another `skein designer` composes " + mission_.string());
+}
+
+std::optional<KeptState::Draft> KeptState::read_draft() {
+  if (auto text = read(file("drafts"))) draft_ = Draft{std::move(*text), read(file("bases"))};
+  return draft_;
+}
 
 void KeptState::keep_places(const Places& places) {
   nlohmann::json kept = nlohmann::json::object();
@@ -56,13 +72,18 @@ void KeptState::keep_places(const Places& places) {
   places_ = std::move(text);
 }
 
-void KeptState::keep_draft(const std::optional<std::string>& draft) {
+void KeptState::keep_draft(const std::optional<Draft>& draft) {
   if (draft == draft_) return;
   std::error_code ignored;
+  if (draft && (!draft_ || draft->base != draft_->base)) {
+    fs::remove(file("bases"), ignored);
+    if (draft->base) write(file("bases"), *draft->base);
+  }
   if (draft) {
-    write(file("drafts"), *draft);
+    write(file("drafts"), draft->text);
   } else {
     fs::remove(file("drafts"), ignored);
+    fs::remove(file("bases"), ignored);
   }
   draft_ = draft;
 }

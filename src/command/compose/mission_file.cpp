@@ -1,6 +1,7 @@
 #include "mission_file.hpp"
 
 #include "core/system/whole_file.hpp"
+#include "mission/xml/finding.hpp"
 #include "mission/xml/text_file.hpp"
 #include "skein/error.hpp"
 
@@ -36,9 +37,18 @@ void MissionFile::save(bool over) {
     throw Unavailable(file_.string() +
                       " was changed by somebody else meanwhile: load that, or save over it");
   }
+  std::error_code ignored;
+  const auto status = std::filesystem::status(file_, ignored);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+    throw Unavailable(file_.string() + " is no regular file any more: move it away");
   write_whole_file("the mission", file_, text());
   saved_ = text();
   history_.seal();
+}
+
+void MissionFile::restore(const std::string& text, std::optional<std::string> base) {
+  history_.edit("take up what was not saved", "", profile::difference(history_.text(), text));
+  saved_ = std::move(base);
 }
 
 void MissionFile::load() {

@@ -36,6 +36,9 @@ class MissionFile {
   /// write_whole_file().
   void save(bool over);
 
+  /// Takes up what was not saved to a file that had `base` then.
+  void restore(const std::string& text, std::optional<std::string> base);
+
   /// Takes what is on the disk in place of the text, as an edit. Throws DescriptionError.
   void load();
 

@@ -14,7 +14,9 @@ using Json = nlohmann::json;
 /// The number by which the client knows its request again.
 Json request_number(std::string_view request) {
   const Json read = Json::parse(request, nullptr, false);
-  return read.is_object() && read.contains("request") ? read["request"] : Json();
+  if (!read.is_object() || !read.contains("request")) return {};
+  const Json& number = read["request"];
+  return number.is_number() || number.is_string() ? number : Json();
 }
 
 std::string answer_text(const Json& number, bool done, const std::string& text) {

@@ -234,6 +234,8 @@ void add_designer(CLI::App& app, int& result) {
       ->allow_extra_args(false);
   add_onlooker(command, arguments);
   auto* profile = command.get_option("--profile")->excludes(composed);
+  for (const char* option : {"--domain", "--interface"})
+    command.get_option(option)->excludes(composed);  // the profile tells them
   auto* variables = command.get_option("--variable");
   variables->remove_needs(profile);
   command.parse_complete_callback([=] {

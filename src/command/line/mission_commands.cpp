@@ -54,6 +54,11 @@ void add_check(CLI::App& app, int& result) {
                    {"skein check --json mission.xml", "The same, for an editor or a script"}});
   auto& arguments = arguments_of(command, check, result);
   add_mission(command, arguments);
+  command
+      .add_option(
+          "--text", arguments.text,
+          "A file with what the profile will hold, such as an editor's; default: the profile")
+      ->type_name(kFile);
   add_host(command, arguments.host);
   add_json(command, arguments.json);
 }

@@ -9,15 +9,18 @@
 #include "mission/check/profile_check.hpp"
 #include "mission/process/exit_codes.hpp"
 #include "mission/supervise/launch_plan.hpp"
+#include "mission/xml/text_file.hpp"
 
 namespace skein::command {
 
-CheckedMission check_mission(const PlanArguments& arguments) {
+CheckedMission check_mission(const PlanArguments& arguments, const std::string& text_file) {
   CheckedMission checked;
   auto& [mission, findings] = checked;
-  mission =
-      profile::read_and_check(arguments.profile, findings,
-                              profile::parse_variables(arguments.variables), arguments.settings);
+  std::string text;
+  if (!text_file.empty()) text = profile::read_text_file(text_file);
+  mission = profile::read_and_check(arguments.profile, findings,
+                                    profile::parse_variables(arguments.variables),
+                                    arguments.settings, text_file.empty() ? nullptr : &text);
   if (mission.peers.empty()) return checked;
   auto chosen = mission;
   std::erase_if(chosen.peers, [&](const profile::PeerProfile& peer) {
@@ -31,7 +34,7 @@ CheckedMission check_mission(const PlanArguments& arguments) {
 }
 
 std::vector<profile::Finding> findings_of(const CheckArguments& arguments) {
-  auto [mission, findings] = check_mission(arguments);
+  auto [mission, findings] = check_mission(arguments, arguments.text);
   if (mission.peers.empty()) return findings;
   const bool nobody_here = std::ranges::none_of(
       mission.peers, [&](const auto& peer) { return launch::is_here(peer.host, arguments.host); });

@@ -20,6 +20,8 @@ namespace {
 
 constexpr ::mode_t kByUmask = 0666;
 constexpr ::mode_t kPermissions = 07777;
+/// What was left when the power failed is not many.
+constexpr int kMostNew = 1000;
 
 /// A file that is being written, in place of another in the end.
 class Draft {
@@ -40,8 +42,11 @@ class Draft {
   bool is_direct() const { return old_mode_ && !S_ISREG(*old_mode_); }
 
   void open() {
-    const int how = is_direct() ? O_WRONLY : O_WRONLY | O_CREAT | O_TRUNC;
-    descriptor_ = FileDescriptor(::open(path_.c_str(), how | O_CLOEXEC | O_NOCTTY, kByUmask));
+    if (is_direct()) {
+      descriptor_ = FileDescriptor(::open(path_.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY));
+    } else {
+      open_new();
+    }
     if (!descriptor_) refuse();
     if (old_mode_ && !is_direct()) ::fchmod(descriptor_.get(), *old_mode_ & kPermissions);
   }
@@ -76,6 +81,17 @@ class Draft {
   }
 
  private:
+  /// None that is there already, which may be somebody's.
+  void open_new() {
+    const std::string first = path_.string();
+    for (int number = 2; number < kMostNew; ++number) {
+      constexpr int kHow = O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOCTTY;
+      descriptor_ = FileDescriptor(::open(path_.c_str(), kHow, kByUmask));
+      if (descriptor_ || errno != EEXIST) return;
+      path_ = first + "-" + std::to_string(number);
+    }
+  }
+
   static std::filesystem::path target_of(const std::filesystem::path& file) {
     std::error_code error;
     const auto target = std::filesystem::canonical(file, error);

@@ -14,12 +14,12 @@ class WriteFailed : public Unavailable {
   using Unavailable::Unavailable;
 };
 
-/// Writes a file whole: beside it at first (`FILE.new`), then to the disk, then in its place. A
-/// reader finds the old content or the new one, after a loss of power, too. What is no regular
-/// file, such as a terminal or a pipe, is written directly; a link is followed. Errors name `what`
-/// it is ("the picture"), the file, the step and the system's reason: InvalidArgument where it
-/// cannot be made, WriteFailed where that may pass (is_passing()) or fails later, which leaves the
-/// old file as it was.
+/// Writes a file whole: beside it at first (`FILE.new`, with a number if that is there), then to
+/// the disk, then in its place. A reader finds the old content or the new one, after a loss of
+/// power, too. What is no regular file, such as a terminal or a pipe, is written directly; a link
+/// is followed. Errors name `what` it is ("the picture"), the file, the step and the system's
+/// reason: InvalidArgument where it cannot be made, WriteFailed where that may pass (is_passing())
+/// or fails later, which leaves the old file as it was.
 void write_whole_file(const std::string& what, const std::filesystem::path& file,
                       std::string_view content);
 

@@ -393,12 +393,9 @@ class Checker {
 
 std::vector<Finding> check(const MissionProfile& profile) { return Checker(profile).run(); }
 
-namespace {
-
-MissionProfile read_and_check_text(const std::filesystem::path& file,
-                                   std::vector<Finding>& findings, const VariableValues& values,
-                                   const std::vector<std::string>& settings,
-                                   const std::string* text) {
+MissionProfile read_and_check(const std::filesystem::path& file, std::vector<Finding>& findings,
+                              const VariableValues& values,
+                              const std::vector<std::string>& settings, const std::string* text) {
   FindingList list;
   std::vector<Finding> of_reading;
   auto profile = read_mission_profile(file, of_reading, values, text);
@@ -409,19 +406,6 @@ MissionProfile read_and_check_text(const std::filesystem::path& file,
   list.add_all(check(profile));
   findings.insert(findings.end(), list.list().begin(), list.list().end());
   return profile;
-}
-
-}  // namespace
-
-MissionProfile read_and_check(const std::filesystem::path& file, std::vector<Finding>& findings,
-                              const VariableValues& values,
-                              const std::vector<std::string>& settings) {
-  return read_and_check_text(file, findings, values, settings, nullptr);
-}
-
-MissionProfile check_text(const std::string& text, const std::filesystem::path& file,
-                          std::vector<Finding>& findings, const VariableValues& values) {
-  return read_and_check_text(file, findings, values, {}, &text);
 }
 
 std::vector<Finding> check_file(const std::filesystem::path& file, const VariableValues& values) {

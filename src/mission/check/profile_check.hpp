@@ -30,15 +30,13 @@ std::vector<Finding> check(const MissionProfile& profile);
 
 /// Reads a profile, gives its parameters the values of `settings` (as apply_setting() does), and
 /// checks it: adds the findings of reading and those of check() to `findings`, and gives what could
-/// be read. Throws nothing for what files can contain; a file that is missing is a finding as well.
-/// Throws InvalidArgument for a setting that a profile without errors does not take.
+/// be read. `text`, unless null: what the file will hold. Throws nothing for what files can
+/// contain; a file that is missing is a finding as well. Throws InvalidArgument for a setting that
+/// a profile without errors does not take.
 MissionProfile read_and_check(const std::filesystem::path& file, std::vector<Finding>& findings,
                               const VariableValues& values = {},
-                              const std::vector<std::string>& settings = {});
-
-/// The same of what a file will hold, which its parts and components are relative to.
-MissionProfile check_text(const std::string& text, const std::filesystem::path& file,
-                          std::vector<Finding>& findings, const VariableValues& values = {});
+                              const std::vector<std::string>& settings = {},
+                              const std::string* text = nullptr);
 
 /// The findings of read_and_check().
 std::vector<Finding> check_file(const std::filesystem::path& file,

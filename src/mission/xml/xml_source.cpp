@@ -11,11 +11,14 @@ namespace {
 
 constexpr std::string_view kBlanks = " \t\r\n";
 constexpr std::size_t kLineLength = 120;
+/// Deeper than what any mission may hold.
+constexpr int kDeepest = 100;
 
 /// Goes through a parsed tree in the order of the text.
 class SpanReader {
  public:
-  explicit SpanReader(const std::string& text) : text_(text), buffer_(text.begin(), text.end()) {
+  SpanReader(const std::string& text, const std::string& file)
+      : text_(text), file_(file), buffer_(text.begin(), text.end()) {
     tree_.load_buffer_inplace(buffer_.data(), buffer_.size(),
                               pugi::parse_default | pugi::parse_comments | pugi::parse_pi,
                               pugi::encoding_utf8);
@@ -35,12 +38,15 @@ class SpanReader {
     return text_.find(end, from) + end.size();
   }
 
-  /// No deeper than parse_xml() lets elements be.
-  void read(const pugi::xml_node& node, std::optional<std::size_t> parent) {
+  void read(const pugi::xml_node& node, std::optional<std::size_t> parent, int depth = 1) {
+    if (depth > kDeepest) {
+      throw DescriptionError(
+          {{Severity::Error, {file_, 0, 0}, "is nested too deep", "split the file"}});
+    }
     const std::size_t number = elements_.size();
     elements_.push_back(started(node, parent));
     for (const auto& child : node.children()) {
-      if (child.type() == pugi::node_element) read(child, number);
+      if (child.type() == pugi::node_element) read(child, number, depth + 1);
       if (child.type() == pugi::node_comment) at_ = behind("-->", place_of(child.value()));
       if (child.type() == pugi::node_cdata) at_ = behind("]]>", place_of(child.value()));
       if (child.type() == pugi::node_pi) at_ = behind("?>", place_of(child.name()));
@@ -69,6 +75,7 @@ class SpanReader {
   }
 
   const std::string& text_;
+  const std::string& file_;
   std::vector<char> buffer_;  // parsed in place: the tree points into it
   pugi::xml_document tree_;
   std::vector<SourceElement> elements_;
@@ -78,6 +85,9 @@ class SpanReader {
 /// As it stands between two such quotes.
 std::string escaped(const std::string& value, char quote) {
   std::string text;
+  for (const char* none : {"\xEF\xBF\xBE", "\xEF\xBF\xBF"})
+    if (value.find(none) != std::string::npos)
+      throw InvalidArgument("a value holds U+FFFE or U+FFFF, which XML cannot hold");
   for (const char c : value) {
     if (c == '&') {
       text += "&amp;";
@@ -135,7 +145,7 @@ Splice difference(std::string_view before, std::string_view after) {
 XmlSource::XmlSource(std::string text, const std::string& file) : text_(std::move(text)) {
   FindingList others_tell;
   parse_xml(text_, file, others_tell);
-  elements_ = SpanReader(text_).run();
+  elements_ = SpanReader(text_, file).run();
   line_break_ = text_.find("\r\n") == std::string::npos ? "\n" : "\r\n";
 }
 

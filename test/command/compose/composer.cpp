@@ -1,6 +1,8 @@
 // A mission while it is composed: what each request makes of its text, and of what the page shows.
 #include "command/compose/composer.hpp"
 
+#include <sys/stat.h>
+
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <random>
@@ -286,9 +288,100 @@ TEST_CASE("what was not saved is there again when the program ends, however it d
   desk.open();
   CHECK(desk.state().text == unsaved);
   CHECK(desk.state().undo == "take up what was not saved");
+  CHECK_THAT(desk.state().troubles.at(0), Contains("was not saved last time"));
   desk.ask("save");
   desk.open();
   CHECK(desk.state().undo.empty());
+}
+
+TEST_CASE("what others have written since then is told, and kept") {
+  Desk desk;
+  desk.folder.write("mission.xml", kMissionText);
+  desk.open();
+  desk.ask("set", {{"element", 0}, {"attribute", "name"}, {"value", "mine"}});
+  desk.composer.reset();
+  desk.folder.write("mission.xml", "<mission name=\"theirs\"/>");
+  desk.open();
+  CHECK_THAT(desk.state().text, Contains("name=\"mine\""));
+  CHECK(desk.state().disk == "changed");
+  CHECK_THROWS_AS(desk.ask("save"), Unavailable);
+  desk.ask("load");
+  desk.open();
+  CHECK(desk.state().text == "<mission name=\"theirs\"/>");
+}
+
+TEST_CASE("one at a time composes a mission") {
+  Desk desk;
+  desk.open();
+  CHECK_THROWS_WITH(
+      Composer(Composer::Options{desk.file, {desk.folder.path()}}, [](const auto&) {}),
+      Contains("another `skein designer` composes"));
+}
+
+TEST_CASE("what is refused has changed nothing") {
+  Desk desk;
+  desk.folder.write("mission.xml", kMissionText);
+  desk.open();
+  const auto refuse = [&](const std::string& what, const Json& members) {
+    CAPTURE(what, members.dump());
+    CHECK_THROWS_AS(desk.ask(what, members), Error);
+    CHECK(desk.state().text == kMissionText);
+    desk.ask("look");
+    CHECK(desk.state().text == kMissionText);
+  };
+  refuse("add_entity", {{"component", desk.component("watcher.xml")}, {"x", 1}});
+  refuse("add_entity", {{"component", desk.component("watcher.xml")}, {"x", 1e9}, {"y", 1}});
+  refuse("set", {{"element", 1.5}, {"attribute", "name"}, {"value", "x"}});
+  refuse("set", {{"element", 1}, {"attribute", "name"}, {"value", "\xEF\xBF\xBF"}});
+  refuse("set", {{"element", 1}, {"attribute", "default"}, {"value", std::string(9 << 20, 'x')}});
+  refuse("text", {{"text", "x"}, {"version", 77}});
+}
+
+TEST_CASE("a file that becomes a pipe, or is nested without end, or is no UTF-8, harms nobody") {
+  Desk desk;
+  std::string deep;
+  for (int i = 0; i < 200'000; ++i) deep += "<a>";
+  for (int i = 0; i < 200'000; ++i) deep += "</a>";
+  desk.folder.write("mission.xml", deep);
+  desk.open();
+  CHECK_FALSE(desk.errors().empty());
+  desk.ask("text", {{"text", "<mission name=\"m\"/>"}});
+  REQUIRE(std::filesystem::remove(desk.file));
+  REQUIRE(::mkfifo(desk.file.c_str(), 0600) == 0);
+  CHECK_THROWS_WITH(desk.ask("save", {{"over", true}}), Contains("no regular file any more"));
+  std::filesystem::remove(desk.file);
+  desk.ask("save");
+  desk.folder.write("mission.xml", "<!-- caf\xE9 --><mission name=\"m\"/>");
+  desk.ask("load");
+  CHECK_THROWS_WITH(desk.ask("text", {{"text", "<mission name=\"n\"/>"}}), Contains("UTF-8"));
+}
+
+TEST_CASE("what only this machine tells takes the place of the findings, for that text alone") {
+  Desk desk;
+  desk.open();
+  desk.add("watcher.xml");
+  const auto unchecked = desk.composer->unchecked();
+  REQUIRE(unchecked);
+  CHECK(content(unchecked->file) == desk.state().text);
+  desk.composer->tell_check(
+      unchecked->version,
+      {{profile::Severity::Error, {desk.file.string(), 3, 3}, "there is no plugin 'boats'", ""}});
+  CHECK(desk.state().checked);
+  CHECK(desk.entity("default/watcher").reason == "there is no plugin 'boats'");
+  CHECK_FALSE(desk.composer->unchecked());
+  desk.ask("set", {{"element", 1}, {"attribute", "host"}, {"value", "bow"}});
+  CHECK(desk.errors().empty());
+  desk.composer->tell_check(unchecked->version, {});
+  CHECK_FALSE(desk.state().checked);
+}
+
+TEST_CASE("an entity that is removed and comes back stands where it stood") {
+  Desk desk;
+  desk.open();
+  desk.add("watcher.xml", {{"x", 300}, {"y", 40}});
+  desk.ask("remove", {{"element", 1}});
+  desk.ask("undo");
+  CHECK(desk.entity("default/watcher").x == 300);
 }
 
 TEST_CASE("entities of a part of the profile are shown, and belong to another file") {
@@ -310,6 +403,38 @@ TEST_CASE("components that cannot be read say why, and are not added") {
   REQUIRE(broken != state.components.end());
   CHECK_THAT(broken->failure, Contains("<interface> is unknown"));
   CHECK_THROWS_AS(desk.add("broken.xml"), InvalidArgument);
+}
+
+TEST_CASE("what differs from another mission of these folders is told, also after further edits") {
+  Desk desk;
+  desk.folder.write("mission.xml", kMissionText);
+  desk.open();
+  const auto differences = [&] {
+    std::vector<std::string> texts;
+    const DesignState now = desk.state();
+    for (const DifferenceState& each : now.differences)
+      texts.push_back(each.kind + " " + each.entity + (each.whole ? " (whole): " : ": ") +
+                      each.text);
+    return texts;
+  };
+  desk.ask("compare", {{"with", desk.file.string()}});
+  CHECK(differences().empty());
+  desk.ask("set", {{"element", 2}, {"attribute", "restart"}, {"value", nullptr}});
+  desk.ask("parameter",
+           {{"element", desk.element("default/pilot")}, {"name", "Rate"}, {"value", "7"}});
+  desk.ask("remove", {{"element", desk.element("default/watcher")}});
+  desk.add("pilot.xml");
+  CHECK(differences() ==
+        std::vector<std::string>{
+            "gone default/watcher (whole): peer watcher is gone",
+            "gone default/pilot: pilot: restart is not given, was \"never\"",
+            "changed default/pilot: pilot, parameter Rate: value is \"7\", was \"${rate}\"",
+            "new default/pilot_2 (whole): peer pilot_2 is new"});
+  desk.ask("compare", {{"with", nullptr}});
+  CHECK(differences().empty());
+  CHECK_THROWS_WITH(desk.ask("compare", {{"with", "../../etc/passwd"}}),
+                    Contains("none of the folders that this page may read"));
+  CHECK_THROWS_WITH(desk.ask("compare", {{"with", "nobody.xml"}}), Contains("nobody.xml"));
 }
 
 TEST_CASE("any edits, undone, done again and saved, leave the text that they should") {

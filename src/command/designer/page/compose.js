@@ -88,7 +88,7 @@ export class Composer {
     document.title = `${design.changed ? "• " : ""}${mission} – Skein`;
     setText($("title"), mission);
     setText($("summary"), `${name}${design.changed ? ", not saved" : ""}: ${design.entities.length === 1 ? "1 entity" : `${design.entities.length} entities`}, ` +
-      (errors ? counted(errors, "error") : "complete: nothing is missing") + (design.flight ? `; the mission ${design.flight}` : ""));
+      (errors ? counted(errors, "error") : design.checked ? "complete: nothing is missing" : "this machine is being checked") + (design.flight ? `; the mission ${design.flight}` : ""));
     set($("summary"), "title", design.file);
     for (const [id, label] of [["undo", design.undo], ["redo", design.redo]]) {
       set($(id), "disabled", !label);
@@ -101,6 +101,7 @@ export class Composer {
     setText($("disk-text"), design.disk === "gone" ? "The file is gone from the disk. " : "Somebody else has changed the file. ");
     set($("disk"), "hidden", !design.disk);
     set($("load"), "hidden", design.disk !== "changed");
+    setText($("over"), design.disk === "gone" ? "Save again" : "Save over it");
     const open = this.tabs.open;
     if (open === "Add") this.components(design);
     if (open === "Edit") this.selection(design);
@@ -119,6 +120,8 @@ export class Composer {
     const wanted = this.search.value.trim().toLowerCase().split(/\s+/);
     const found = design.components.filter((each) => wanted.every((word) => `${each.name} ${summaryOf(each)} ${each.reference}`.toLowerCase().includes(word)));
     const owner = componentOf(design, design.parts.find((part) => part.entity === this.selected && !part.csp));
+    const isFar = (/** @type {ComponentState} */ each) => Number(each.reference.startsWith("/") || each.reference.startsWith("../"));
+    found.sort((a, b) => isFar(a) - isFar(b)); // one's own first
     sync(this.list, found, (each) => each.file, (each) => this.component(each), (item, each) => {
       const [title, , , acts] = item.children, [asEntity, asCsp] = acts.children;
       set(item, "class", each.failure ? "bad" : isCsp(design, each) ? "off" : "");
@@ -179,7 +182,7 @@ export class Composer {
   problems(design) {
     const page = this.tabs.page("Problems");
     if (!page.firstChild) page.append(h("p", { class: "hint" }), h("ul", { class: "list" }));
-    setText(page.children[0], design.findings.length ? "" : "Nothing is missing or wrong. Whether this machine has what the mission needs, skein check and skein launch look.");
+    setText(page.children[0], design.findings.length ? "" : design.checked ? "Nothing is missing or wrong, in the mission and on this machine." : "This machine is being checked.");
     sync(page.children[1], design.findings, (each) => `${each.place} ${each.problem}`, (each) => {
       const item = h("li", { class: each.severity === "error" ? "bad" : "busy" }, h("div"), h("button", { type: "button", class: "plain" }, each.place));
       showFindings(item.children[0], [each]);

@@ -9,7 +9,7 @@ import { short } from "./words.js";
 /** @typedef {{name: string, type: string, unit: string, minimum: number[], maximum: number[], documentation: string}} MeaningState */
 /** @typedef {{element: number, entity: string, csp: string, description: string}} PartState */
 /** @typedef {{kind: "new"|"gone"|"changed", entity: string, whole: boolean, text: string}} DifferenceState */
-/** @typedef {{file: string, text: string, version: number, changed: boolean, disk: ""|"changed"|"gone", undo: string, redo: string,
+/** @typedef {{file: string, text: string, version: number, changed: boolean, checked: boolean, disk: ""|"changed"|"gone", undo: string, redo: string,
  *   flight: string, compared: string, differences: DifferenceState[], troubles: string[], elements: ElementState[], parts: PartState[], findings: FindingState[], components: ComponentState[],
  *   dictionary: MeaningState[], entities: import("./state.js").EntityState[], links: import("./state.js").Link[]}} DesignState */
 

@@ -55,7 +55,7 @@ export class Form {
       const value = given(design, element, field.name);
       const from = inherited(design, element, field.name);
       const missing = field.required ? "" : from !== undefined ? `${from} (inherited)` : field.fallback;
-      if (field.choices.length) fillChoice(row.querySelector("select"), [...field.choices, ...variablesOf(design)], value, missing);
+      if (field.choices.length) fillChoice(row.querySelector("select"), [...field.choices, ...variablesOf(design, field.choices)], value, missing);
       else fillInput(row.querySelector("input"), value, missing);
     });
   }
@@ -134,7 +134,10 @@ export class Form {
     this.nested(place.children[0], design, childrenOf(design, element).filter((child) => names.includes(design.elements[child].name)));
     chooser(place.children[1], `Add to this ${kind.name}`, names, (name) => name, (child) => {
       const required = this.schema.kind(child)?.fields.filter((field) => field.required) ?? [];
-      this.edit("add", { element, child, attributes: Object.fromEntries(required.map((field) => [field.name, ""])) });
+      const taken = new Set(design.elements.map((_, i) => given(design, i, "name")));
+      let number = 1;
+      while (taken.has(`${child}_${number}`)) number += 1;
+      this.edit("add", { element, child, attributes: Object.fromEntries(required.map((field) => [field.name, field.name === "name" ? `${child}_${number}` : ""])) });
     });
   }
 
@@ -147,7 +150,7 @@ export class Form {
       return { element, key: `${kind} ${counts[kind] = (counts[kind] ?? 0) + 1}` };
     });
     sync(place, keyed, ({ key }) => key, ({ element }) => {
-      const made = h("details", { open: known && !given(design, element, "name") && design.elements[element].name !== "csp" }, h("summary"), h("div"),
+      const made = h("details", { open: known && design.elements[element].name !== "csp" }, h("summary"), h("div"),
         h("p", { class: "acts" }, h("button", { type: "button", onclick: () => this.edit("remove", { element: Number(made.dataset.element) }) }, "Remove")));
       return made;
     }, (details, { element }) => {
@@ -180,7 +183,7 @@ function fillInput(input, value, missing) {
 /** The same for a choice, which arrow keys go through. @param {HTMLSelectElement} select @param {string[]} choices @param {string|undefined} value @param {string} missing */
 function fillChoice(select, choices, value, missing) {
   const all = value === undefined || choices.includes(value) ? choices : [...choices, value];
-  sync(select, ["", ...all], (each) => each, (each) => h("option", { value: each }), (option, each) => setText(option, each || (missing ? `– ${missing}` : "–")));
+  sync(select, ["", ...all], (each) => each, (each) => h("option", { value: each }), (option, each) => setText(option, each || (missing ? `default: ${missing}` : "–")));
   if (select !== document.activeElement && select.value !== (value ?? "")) select.value = value ?? "";
 }
 
@@ -198,7 +201,8 @@ function chooser(place, label, names, key, chosen) {
   sync(select, names, key, (name) => h("option", { value: name }, name));
 }
 
-/** @param {DesignState} design @returns {string[]} `${NAME}` */
-function variablesOf(design) {
-  return design.elements.flatMap((each, i) => (each.name === "variable" ? [`\${${given(design, i, "name") ?? ""}}`] : []));
+/** `${NAME}` of each variable, or of those with one of the values. @param {DesignState} design @param {string[]} [values] @returns {string[]} */
+function variablesOf(design, values) {
+  return design.elements.flatMap((each, i) => (each.name === "variable" && given(design, i, "name") &&
+    (!values || values.includes(given(design, i, "default") ?? "")) ? [`\${${given(design, i, "name")}}`] : []));
 }
