@@ -211,7 +211,8 @@ void add_designer(CLI::App& app, int& result) {
   auto& arguments = arguments_of(command, serve_designer, result);
   auto* composed =
       command
-          .add_option("PROFILE", arguments.composed, "The mission profile (XML) that is composed")
+          .add_option("PROFILE", arguments.composed,
+                      "The mission profile (XML) that is composed, or will be; default: none")
           ->type_name(kFile);
   auto* watch = command
                     .add_flag("--watch", arguments.watch,
@@ -229,7 +230,7 @@ void add_designer(CLI::App& app, int& result) {
           "A folder with component descriptions, also in folders in it; may be given several "
           "times; default: only those beside the profile and Skein's own")
       ->type_name("FOLDER")
-      ->check(CLI::ExistingDirectory)
+      ->check(CLI::Validator(CLI::ExistingDirectory).description(""))
       ->needs(composed)
       ->allow_extra_args(false);
   add_onlooker(command, arguments);

@@ -90,7 +90,7 @@ std::string mission_place(const profile::MissionProfile& mission) {
   const std::string domain = std::to_string(mission.domain);
   const char* const variable = std::getenv(kDomainVariable);
   const std::string named = variable ? variable : "";
-  const std::string text = "flies on domain " + domain;
+  std::string text = "flies on domain " + domain;
   if (named == domain || (named.empty() && mission.domain == 0)) return text;
   return text + "; commands that look need --domain " + domain + ", or they look on domain " +
          (named.empty() ? "0" : named + ", as " + kDomainVariable + " says");

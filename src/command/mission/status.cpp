@@ -31,7 +31,7 @@ std::string without_system(const profile::MissionProfile& mission, const std::st
   return process.substr(std::min(process.size(), first.size() + 1));
 }
 
-constexpr std::size_t kLongestReason = 4096;
+constexpr std::size_t kLongestStateReason = 4096;
 
 std::string seconds(double time) {
   std::array<char, 32> text{};
@@ -56,7 +56,7 @@ void print_status(const launch::MissionStatus& status) {
               printable(status.mission).c_str(), status.domain, status.launcher,
               seconds(status.uptime).c_str(), status.degraded ? ", degraded" : "");
   if (!status.ending.empty())
-    std::printf("  ends: %s\n", printable(status.ending, kLongestReason).c_str());
+    std::printf("  ends: %s\n", printable(status.ending, kLongestStateReason).c_str());
   for (const auto& process : status.processes) print_status(process);
   for (const auto& name : status.elsewhere)
     std::printf("  not started here: %s\n", printable(name).c_str());
@@ -69,7 +69,7 @@ int show_all(bool json) {
   for (const launch::LauncherAnswer& answer : launch::ask_launchers("status")) {
     if (!answer.failure.empty()) {
       complete = false;
-      std::fprintf(stderr, "skein: %s\n", printable(answer.failure, kLongestReason).c_str());
+      std::fprintf(stderr, "skein: %s\n", printable(answer.failure, kLongestStateReason).c_str());
       continue;
     }
     if (json) {

@@ -74,7 +74,7 @@ Path static_library(const Path& wanted) {
     places = module_directories();
   }
   for (const Path& place : places) {
-    const Path archive = place / wanted.filename().replace_extension(".a");
+    Path archive = place / wanted.filename().replace_extension(".a");
     std::error_code ignored;
     if (std::filesystem::exists(archive, ignored)) return archive;
   }
