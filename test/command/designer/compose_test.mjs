@@ -213,7 +213,7 @@ test("text that is typed changes the drawing, and what is wrong in it is told wi
   await page.locator("#composing .finding", { hasText: "<mission> is not closed" }).waitFor();
   assert.equal(await page.locator(".box").count(), 13);
   await page.locator("#undo").click();
-  await until(async () => (await page.locator("#composing .finding.error").count()) === 0);
+  await until(async () => (await page.locator("#composing-Problems .finding").count()) === 0);
   await page.locator("#summary", { hasText: "complete: nothing is missing" }).waitFor();
 });
 
