@@ -142,6 +142,30 @@ Splice difference(std::string_view before, std::string_view after) {
           std::string(after.substr(same, after.size() - same - tail))};
 }
 
+Splice typed_difference(std::string_view before, std::string_view typed) {
+  const bool plain = before.find('\r') == std::string_view::npos;
+  if (plain || typed.find('\r') != std::string_view::npos) return difference(before, typed);
+  std::string fed;                 // `before` with line feeds alone
+  std::vector<std::size_t> place;  // of each of its bytes in `before`
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    place.push_back(i);
+    fed += before[i] == '\r' ? '\n' : before[i];
+    if (before.substr(i).starts_with("\r\n")) ++i;
+  }
+  place.push_back(before.size());
+  const Splice change = difference(fed, typed);
+  const std::string_view line_break = before.find("\r\n") == std::string_view::npos ? "\r" : "\r\n";
+  Splice splice{place[change.at], place[change.at + change.removed] - place[change.at], ""};
+  for (const char c : change.inserted) {
+    if (c == '\n') {
+      splice.inserted += line_break;
+    } else {
+      splice.inserted += c;
+    }
+  }
+  return splice;
+}
+
 XmlSource::XmlSource(std::string text, const std::string& file) : text_(std::move(text)) {
   FindingList others_tell;
   parse_xml(text_, file, others_tell);

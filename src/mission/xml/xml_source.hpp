@@ -43,6 +43,10 @@ std::string spliced(std::string_view text, const Splice& splice);
 /// The smallest splice that makes one text of the other.
 Splice difference(std::string_view before, std::string_view after);
 
+/// The splice that makes `before` the text that somebody has typed into a field of a page, which
+/// turns all line ends into line feeds: the line ends of all that is unchanged stay.
+Splice typed_difference(std::string_view before, std::string_view typed);
+
 /// Well-formed XML as a person has written it, to change it here and there and leave the rest as it
 /// is, byte for byte. Elements have numbers in the order of their start tags; the outermost has 0.
 /// A plain value.

@@ -148,6 +148,19 @@ TEST_CASE("the smallest splice makes one text of the other") {
   CHECK(difference("abcabc", "abcXabc").inserted == "X");
 }
 
+TEST_CASE("text from a page's field, which has line feeds alone, leaves all other line ends") {
+  const auto typed = [](const std::string& before, const std::string& after) {
+    return spliced(before, typed_difference(before, after));
+  };
+  CHECK(typed("a\r\nb\r\nc\r\n", "a\nb\nc\n") == "a\r\nb\r\nc\r\n");
+  CHECK(typed("a\r\nb\r\nc\r\n", "a\nbx\ny\nc\n") == "a\r\nbx\r\ny\r\nc\r\n");
+  CHECK(typed("a\nb\r\nc\n", "a\nc\n") == "a\nc\n");
+  CHECK(typed("a\rb", "a\nc") == "a\rc");
+  CHECK(typed("a\r\nb", "b") == "b");
+  CHECK(typed("a\nb", "a\n\nb") == "a\n\nb");
+  CHECK(typed("a\r\nb", "a\r\nc") == "a\r\nc");
+}
+
 TEST_CASE("whatever is changed, the document is what it should be, and all else stays as it was") {
   for (unsigned seed = 1; seed <= 200; ++seed) {
     CAPTURE(seed);
