@@ -1,9 +1,11 @@
 #include <atomic>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
-#include <optional>
+#include <utility>
 
 #include "command/commands.hpp"
 #include "command/designer/designer.hpp"
@@ -15,11 +17,13 @@
 #include "command/print/interruption.hpp"
 #include "command/print/start_program.hpp"
 #include "composer.hpp"
+#include "core/printable.hpp"
 #include "core/system/whole_file.hpp"
 #include "design.hpp"
 #include "flight.hpp"
 #include "mission/xml/notation.hpp"
 #include "skein/error.hpp"
+#include "skein/executor.hpp"
 
 namespace skein::command {
 namespace {
@@ -29,17 +33,15 @@ using compose::Composer;
 using designer::LiveDomain;
 using designer::PageHub;
 
-constexpr double kTickSeconds = 0.25;
-constexpr int kTicksPerLook = 4;
-/// A whole mission with what JSON needs around it.
+constexpr double kLookSeconds = 1;
+constexpr std::size_t kLongestError = 1024;
+/// A whole mission as a JSON text.
 constexpr std::size_t kLargestRequest = std::size_t{3} << 20;
 constexpr std::chrono::seconds kLongestCheck{60};
 
-std::string own_program() { return fs::read_symlink("/proc/self/exe").string(); }
-
-/// Where this program's installation keeps profiles; in a build tree nothing is there.
+/// The profiles of this program's installation; a build tree has none there.
 fs::path installed_profiles() {
-  return fs::path(own_program()).parent_path() / "../share/skein/mission_profiles";
+  return fs::read_symlink("/proc/self/exe").parent_path() / "../share/skein/mission_profiles";
 }
 
 Composer::Options composer_options(const DesignerArguments& arguments) {
@@ -54,7 +56,7 @@ Composer::Options composer_options(const DesignerArguments& arguments) {
   return options;
 }
 
-/// Whether a start script may be written there: nothing is, or one that was.
+/// Whether the file may become a start script: it is not there, or it is one.
 bool is_free(const fs::path& script) {
   std::error_code ignored;
   const fs::file_status status = fs::symlink_status(script, ignored);
@@ -64,19 +66,20 @@ bool is_free(const fs::path& script) {
                  .find("# Written by `skein script`.") != std::string::npos;
 }
 
-/// A mission that is composed, launched and watched on one page.
+/// Composes, launches and watches a mission on one page.
 class Workplace {
  public:
   explicit Workplace(const DesignerArguments& arguments)
       : arguments_(arguments),
+        options_(composer_options(arguments)),
         hub_(std::make_shared<PageHub>(
             PageHub::Obey{[this](std::string_view request) { return obey(request); }, may_wait})),
-        composer_(composer_options(arguments), [this](const Composer::Json& state) {
+        composer_(options_, [this](const std::shared_ptr<const std::string>& state) {
           hub_->publish(PageHub::Kind::Design, state);
         }) {
     arguments_.profile = arguments.composed;
   }
-  ~Workplace() { hub_->close(); }
+  ~Workplace() { end(); }
   Workplace(const Workplace&) = delete;
   Workplace& operator=(const Workplace&) = delete;
 
@@ -85,40 +88,48 @@ class Workplace {
     const designer::ServedSite site(
         {arguments_.port, arguments_.token, arguments_.no_browser, kLargestRequest,
          "look, change this mission, and launch it"},
-        {[this](auto) { return hub_->look(); }, nullptr, [this] { return composer_.state(); },
-         profile::mission_schema()},
+        {[this](auto) { return hub_->look(); }, nullptr,
+         [this] { return hub_->look(PageHub::Kind::Design); }, profile::mission_schema()},
         hub_);
-    for (int tick = 0; !interruption.wait(kTickSeconds); ++tick) {
-      if (wanted_.exchange(false)) watch(interruption);
-      if (tick % kTicksPerLook != 0) continue;
-      look();
-      if (hub_->is_watched()) check();
+    while (!interruption.wait(kLookSeconds)) {
+      try {
+        look();
+      } catch (const Error& error) {  // the next look may succeed
+        std::fprintf(stderr, "skein: %s\n", printable(error.what(), kLongestError).c_str());
+      }
     }
-    hub_->close();
+    end();
   }
 
  private:
   static bool may_wait(std::string_view text) {
     const auto request = nlohmann::json::parse(text, nullptr, false);
     if (!request.is_object() || !request.contains("do")) return false;
-    return request["do"] == "launch" || request["do"] == "script" || request.contains("launcher");
+    const auto& action = request["do"];
+    return action == "launch" || action == "script" || action == "watch" ||
+           request.contains("launcher");
+  }
+
+  /// Nothing is begun any more when it returns.
+  void end() {
+    ending_ = true;
+    hub_->close();
+    checks_.stop();
   }
 
   std::string obey(std::string_view text) {
     const nlohmann::json request = designer::request_of(text);
-    const std::string what = designer::text_of(request, "do");
-    if (what == "launch") return launch();
-    if (what == "script") return write_start_script();
-    if (what == "watch") {
-      wanted_ = true;
-      return "looking";
-    }
+    const std::string action = designer::text_of(request, "do");
+    if (action == "launch") return launch();
+    if (action == "script") return write_start_script();
+    if (action == "watch") return watch();
     const auto domain = domain_now();
-    if (request.contains("launcher")) {
-      if (!domain) throw Unavailable("nobody watches the mission");
-      return designer::obey(text, domain->actions());
+    const bool is_live = request.contains("launcher") || request.value("live", false);
+    if (is_live && !domain) throw Unavailable("nobody watches the mission");
+    if (is_live || (action == "move" && domain)) {
+      std::string answer = designer::obey(text, domain->actions());
+      if (is_live) return answer;
     }
-    if (what == "move" && domain) (void)designer::obey(text, domain->actions());
     return composer_.obey(text);
   }
 
@@ -127,95 +138,134 @@ class Workplace {
     return domain_;
   }
 
-  std::vector<std::string> words(const std::string& command, const fs::path& mission) const {
-    std::vector<std::string> all{own_program(), command, mission.string()};
+  std::shared_ptr<compose::Flight> flight_now() const {
+    std::lock_guard lock(mutex_);
+    return flight_;
+  }
+
+  std::vector<std::string> words(const std::string& command) const {
+    std::vector<std::string> all{program_, command, options_.mission.string()};
     for (const std::string& variable : arguments_.variables)
       all.insert(all.end(), {"--variable", variable});
     return all;
   }
 
-  /// Has `skein check` look at the text, also at what only this machine tells, once it rests.
-  void check() {
-    const auto unchecked = composer_.unchecked();
-    if (!unchecked || unchecked->version != seen_) {
-      seen_ = unchecked ? unchecked->version : 0;
-      return;
-    }
-    auto command = words("check", composer_.mission());
-    command.insert(command.end(), {"--json", "--text", unchecked->file.string()});
-    const ProgramEnd end = run_program(command, kLongestCheck);
-    composer_.tell_check(unchecked->version, compose::findings_in(end.output));
+  ProgramEnd run_to_end(const std::vector<std::string>& command) const {
+    return run_program(command, kLongestCheck, [this] { return ending_.load(); });
   }
 
-  /// What the check refuses is not started.
+  /// Has `skein check` look at the text once nobody changes it, for the findings that need this
+  /// machine.
+  void check() {
+    const auto unchecked = composer_.unchecked();
+    const std::uint64_t version = unchecked ? unchecked->version : 0;
+    if (std::exchange(seen_, version) != version || !unchecked || checking_.exchange(true)) return;
+    checks_.post([this, text = *unchecked] {
+      Composer::Check check;
+      try {
+        auto command = words("check");
+        command.insert(command.end(), {"--json", "--text", text.file.string()});
+        check.findings = compose::findings_in(run_to_end(command).output);
+      } catch (const std::exception& error) {
+        check.failure = std::string("this machine could not be checked: ") + error.what();
+      }
+      composer_.tell_check(text.version, std::move(check));
+      checking_ = false;
+    });
+  }
+
+  /// Starts nothing that the check refuses.
   std::string launch() {
-    const fs::path mission = composer_.saved_file();
-    std::lock_guard lock(launching_);
-    if (flight_ && flight_->end().empty()) throw Unavailable("it flies already: stop it first");
-    const ProgramEnd check = run_program(words("check", mission), kLongestCheck);
+    if (launching_.exchange(true)) throw Unavailable("it is being launched");
+    struct Done {
+      ~Done() { launching = false; }
+      std::atomic<bool>& launching;
+    } const done{launching_};
+    composer_.demand_saved();
+    if (const auto flight = flight_now(); flight && flight->end().empty())
+      throw Unavailable("it flies already: stop it first");
+    const ProgramEnd check = run_to_end(words("check"));
     if (check.exit_code != 0) throw InvalidArgument("not launched:\n" + check.errors);
-    flight_.emplace(words("launch", mission));
-    wanted_ = true;
-    return "launched";
+    composer_.demand_saved();
+    if (ending_) throw Unavailable("not launched: skein designer ends");
+    auto flight = std::make_shared<compose::Flight>(words("launch"));
+    {
+      std::lock_guard lock(mutex_);
+      flight_ = std::move(flight);
+    }
+    try {
+      return "launched; " + watch();
+    } catch (const Error& error) {
+      return std::string("launched, but it cannot be watched: ") + error.what();
+    }
   }
 
   std::string write_start_script() {
-    fs::path script = composer_.saved_file();
-    auto command = words("script", script);
+    composer_.demand_saved();
+    fs::path script = options_.mission;
     script.replace_extension(".sh");
     if (!is_free(script))
       throw Unavailable(script.string() + " is there, and not by `skein script`: move it away");
+    auto command = words("script");
     command.insert(command.end(), {"--output", script.string()});
-    const ProgramEnd end = run_program(command, kLongestCheck);
+    const ProgramEnd end = run_to_end(command);
     if (end.exit_code != 0) throw InvalidArgument("not written:\n" + end.errors);
     return "written to " + script.string();
   }
 
-  /// Anew for what the file has now. On the thread that looks.
-  void watch(const Interruption& interruption) try {
-    std::vector<profile::Finding> findings;
-    const auto mission = profile::read_mission_profile(
-        arguments_.composed, findings, profile::parse_variables(arguments_.variables));
-    auto domain = std::make_shared<LiveDomain>(arguments_, designer::plan_of(mission),
-                                               interruption.gives_up());
+  /// Begins anew only if the file has another plan by now.
+  std::string watch() {
+    std::vector<profile::Finding> ignored;
+    const auto mission =
+        profile::read_mission_profile(options_.mission, ignored, options_.variables);
+    auto plan = designer::plan_of(mission);
+    auto domain = domain_now();
+    if (!domain || !domain->is_of(arguments_.watched_domain(), plan)) {
+      domain = std::make_shared<LiveDomain>(arguments_, std::move(plan),
+                                            [this] { return ending_.load(); });
+      hub_->publish(PageHub::Kind::Domain, nullptr);  // what pages show is another domain
+    }
     domain->place(composer_.places());
     std::lock_guard lock(mutex_);
-    domain_ = std::move(domain);
-  } catch (const Error& error) {
-    composer_.tell_flight(compose::kUnwatched + std::string(error.what()));
+    domain_.swap(domain);  // the old one leaves when the lock is free again
+    return "watched";
   }
 
   void look() {
-    {
-      std::lock_guard lock(launching_);
-      if (flight_) {
-        const std::string end = flight_->end();
-        composer_.tell_flight(end.empty() ? "flies" : end);
-      }
+    if (const auto flight = flight_now()) {
+      const std::string end = flight->end();
+      composer_.tell_flight(end.empty() ? "flies" : end);
     }
     const auto domain = domain_now();
     if (hub_->is_watched()) {
       composer_.look_at_disk();
+      check();
       if (domain) hub_->publish(PageHub::Kind::Domain, domain->look());
-    } else if (domain) {
+    } else if (domain && !domain->rests()) {
+      hub_->publish(PageHub::Kind::Domain, nullptr);
       domain->rest();
     }
   }
 
+  // Read at the start: the file may be replaced meanwhile.
+  const std::string program_ = fs::read_symlink("/proc/self/exe").string();
   DesignerArguments arguments_;
-  std::uint64_t seen_ = 0;           // the version of the text at the last look
-  std::atomic<bool> wanted_{false};  // to watch the domain
-  mutable std::mutex mutex_;         // of what follows
+  const Composer::Options options_;
+  std::uint64_t seen_ = 0;  // the version of an unchecked text at the last look
+  std::atomic<bool> ending_{false};
+  std::atomic<bool> checking_{false};
+  std::atomic<bool> launching_{false};
+  mutable std::mutex mutex_;  // of the two pointers
   std::shared_ptr<LiveDomain> domain_;
-  std::mutex launching_;  // of what follows
-  std::optional<compose::Flight> flight_;
+  std::shared_ptr<compose::Flight> flight_;
   const std::shared_ptr<PageHub> hub_;
   Composer composer_;
+  ThreadExecutor checks_{"skein-check", 1, SIZE_MAX};
 };
 
 int compose_mission(const DesignerArguments& arguments) {
   const Interruption interruption;
-  ::unsetenv("SKEIN_DESIGNER_TOKEN");  // none of a mission's processes needs it
+  ::unsetenv("SKEIN_DESIGNER_TOKEN");  // not for the mission's processes
   Workplace(arguments).run(interruption);
   return 0;
 }

@@ -8,28 +8,25 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
-#include "command/designer/layout.hpp"
+#include "comparison.hpp"
 #include "design_state.idl.hpp"
+#include "element_trail.hpp"
 #include "kept_state.hpp"
 #include "mission/profile/mission_profile.hpp"
 #include "mission/xml/xml_source.hpp"
 #include "mission_file.hpp"
+#include "placement.hpp"
 #include "repository.hpp"
 
 namespace skein::command::compose {
 
-struct Edit;
-
-/// How DesignState::flight begins if a mission cannot be watched.
-inline constexpr const char* kUnwatched = "cannot be watched: ";
-
-/// A mission while it is composed: its text, and what the page shows of it. Thread-safe.
+/// A mission while it is composed: its text, and the DesignState that the page shows. Thread-safe.
 class Composer {
  public:
-  using Json = std::shared_ptr<const std::string>;
   /// Takes each new DesignState, as JSON. Is called with a lock held.
-  using Publish = std::function<void(Json)>;
+  using Publish = std::function<void(std::shared_ptr<const std::string>)>;
 
   struct Options {
     std::filesystem::path mission;                  ///< Whole; need not be there.
@@ -37,49 +34,49 @@ class Composer {
     profile::VariableValues variables{};
   };
 
-  /// Throws DescriptionError for a file that cannot be read.
+  /// Publishes the first state. Throws DescriptionError for a file that cannot be read, and
+  /// Unavailable if another process composes it.
   Composer(const Options& options, Publish publish);
 
-  /// Carries out a request of the page, a JSON object with `do`: what edit_of() knows, or
-  /// `text` with the whole `text`, with the `version` of the text for which it is meant; `undo`,
-  /// `redo`; `save`, which with `over` overwrites what others have written; `load`; `look` for
-  /// components; `compare` `with` a file of these folders, the mission's own included, or with null
-  /// nothing; `move` and `arrange` as designer::obey(). Returns what was done, in words. Throws as
-  /// edit_of(), and Unavailable where others were faster.
+  /// Carries out a request of the page, a JSON object. `do` is one of the edits of edit_of(), or
+  /// `text` with the whole `text`; both name the `version` of the text for which they are meant. An
+  /// edit of an older version means the same element in the present one.
+  /// Otherwise it is `undo`, `redo`, `save` (`over` overwrites the changes of others), `load`,
+  /// `look` for components, `compare` `with` a file of the folders or null, or `move` and
+  /// `arrange` as in designer::obey(). Returns the effect in words. Throws as edit_of(), and
+  /// Unavailable if others were faster.
   std::string obey(std::string_view request);
 
-  /// A text that `skein check` was not asked of yet, and a file that has it.
+  /// A text of which `skein check` was not asked yet, and a file with that text.
   struct Unchecked {
     std::uint64_t version;
     std::filesystem::path file;
   };
   std::optional<Unchecked> unchecked() const;
-  /// What `skein check` finds in that version.
-  void tell_check(std::uint64_t version, std::vector<profile::Finding> findings);
+
+  /// The findings of `skein check`, or the reason why there are none.
+  struct Check {
+    std::vector<profile::Finding> findings;
+    std::string failure{};
+  };
+  /// Nothing happens if the text has another version by now.
+  void tell_check(std::uint64_t version, Check check);
 
   /// Looks whether others have changed the file.
   void look_at_disk();
-  /// What became of the mission that was launched, as DesignState has it.
+  /// The state of the launched mission, as in DesignState.
   void tell_flight(const std::string& flight);
-  /// The file, if it has what is shown: throws Unavailable otherwise.
-  std::filesystem::path saved_file() const;
+  /// Throws Unavailable unless the file has the text that is shown.
+  void demand_saved() const;
 
-  const std::filesystem::path& mission() const noexcept { return options_.mission; }
-  Places places() const;
-  Json state() const;
+  Placement::Places places() const;
 
  private:
-  std::string carry_out(const std::string& what, const nlohmann::json& request);
-  void demand_version(const nlohmann::json& request) const;
+  std::string carry_out(const std::string& action, const nlohmann::json& request);
+  nlohmann::json in_present_numbers(const nlohmann::json& request) const;
   std::string edit(const nlohmann::json& request);
   std::string replace_text(const nlohmann::json& request);
-  std::string save(const nlohmann::json& request);
-  std::string compare(const nlohmann::json& request);
-  void find_differences();
-  void place_new(const Edit& edit, designer::Place at);
-  void arrange();
   void refresh();
-  void keep_names(const DesignState& before);
   void keep();
   void publish();
 
@@ -91,12 +88,11 @@ class Composer {
   MissionFile file_;
   std::optional<profile::XmlSource> source_;  // none while the text is no XML
   DesignState design_;
-  std::optional<std::vector<profile::Finding>> checked_;  // of this text
-  designer::Layout layout_;
-  Places remembered_;               // also of boxes that have gone, which undo brings back
-  std::filesystem::path compared_;  // empty: nothing
-  std::string unkept_;              // why it is not
-  Json state_;
+  ElementTrail trail_;
+  std::optional<Check> check_;  // of this text
+  Placement placement_;
+  Comparison comparison_;
+  std::string unkept_;  // the reason if the state is not kept
 };
 
 }  // namespace skein::command::compose

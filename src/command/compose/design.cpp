@@ -90,7 +90,7 @@ class DesignMaker {
     design_.parts.push_back(std::move(part));
   }
 
-  /// What is wrong in the description of a component concerns who uses it.
+  /// A finding in a component description concerns each entity that uses the component.
   std::int32_t element_of(const profile::SourcePosition& where) const {
     const std::int32_t own = element_at(where);
     if (own != kNoElement) return own;
@@ -164,7 +164,7 @@ class DesignMaker {
     }
   }
 
-  /// To those in its own system that provide what it needs; else to all that do.
+  /// To the providers in its own system; if there are none, to all providers.
   void add_links(std::size_t number, EntityState& entity) {
     std::set<std::string> told;
     for (const auto& need : composition_.needs(number)) {

@@ -18,7 +18,7 @@ DesignState design_of(const std::string& text, const std::filesystem::path& file
                       const profile::VariableValues& values, const Repository& repository,
                       const std::vector<profile::Finding>* checked = nullptr);
 
-/// What `skein check --json` has printed. Throws Unavailable for anything else.
+/// The findings in the output of `skein check --json`. Throws Unavailable for other text.
 std::vector<profile::Finding> findings_in(const std::string& json);
 
 /// How a mission in that folder names a file: relatively, unless they have nothing in common.

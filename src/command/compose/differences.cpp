@@ -1,7 +1,6 @@
 #include "differences.hpp"
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <utility>
 
@@ -19,7 +18,7 @@ std::string attribute_of(const XmlNode& node, const char* name) {
   return attribute ? attribute->value : "";
 }
 
-/// By what an element is known again.
+/// The attribute that identifies an element among its siblings.
 std::string name_of(const XmlNode& node) {
   for (const char* attribute : {"name", "component", "file"})
     if (std::string name = attribute_of(node, attribute); !name.empty()) return name;
@@ -31,14 +30,14 @@ std::string called(const XmlNode& node) {
   return node.name + (name.empty() ? "" : " " + profile::shortened(name));
 }
 
-/// Where an element stands: the entity, the words before its own, and the system that it inherits.
+/// The surroundings of an element: its entity, the words before its own, the inherited system.
 struct Around {
   std::string entity;
   std::string words;
   std::string system = "default";
 };
 
-class Comparison {
+class Walk {
  public:
   void compare(const XmlNode& before, const XmlNode& now, const Around& around) {
     const Around inner = within(now, around);
@@ -119,9 +118,9 @@ class Comparison {
 }  // namespace
 
 std::vector<Difference> differences(const XmlNode& before, const XmlNode& now) {
-  Comparison comparison;
-  comparison.compare(before, now, {});
-  return std::move(comparison).result();
+  Walk walk;
+  walk.compare(before, now, {});
+  return std::move(walk).result();
 }
 
 }  // namespace skein::command::compose

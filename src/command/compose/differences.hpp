@@ -7,7 +7,7 @@
 
 namespace skein::command::compose {
 
-/// What one mission has otherwise than another.
+/// A difference between two missions.
 struct Difference {
   enum class Kind { New, Gone, Changed };
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -43,11 +42,8 @@ class EditMaker {
 
  private:
   std::size_t element() const {
-    constexpr double kMost = 1e6;
-    const double number = designer::number_of(request_, "element", kMost);
-    if (number >= 0 && number < static_cast<double>(source_.elements().size()) &&
-        number == std::floor(number))
-      return static_cast<std::size_t>(number);
+    const std::size_t number = designer::count_of(request_, "element");
+    if (number < source_.elements().size()) return number;
     throw InvalidArgument("the mission has no such element");
   }
 
@@ -57,7 +53,7 @@ class EditMaker {
     return text_of(request_, "value");
   }
 
-  /// What may stand in the element. Throws InvalidArgument for one that may not be there.
+  /// The schema's rule for the element. Throws InvalidArgument if the element is not allowed.
   const profile::Notation& notation(std::size_t number) const {
     const auto& element = source_.elements()[number];
     const profile::Notation* known = nullptr;
@@ -165,6 +161,13 @@ class EditMaker {
       attributes.emplace_back("plugin", known.plugin);
   }
 
+  /// A name in PATH stays; a path gets the slash by which a profile knows one.
+  std::string program_reference(const std::string& program) const {
+    if (!program.starts_with('/')) return program;
+    const std::string way = reference_to(program, fs::path(design_.file).parent_path());
+    return way.starts_with('/') ? way : "./" + way;
+  }
+
   Edit add_entity() const {
     const fs::path file = text_of(request_, "component");
     const KnownComponent& known = component(file);
@@ -176,10 +179,7 @@ class EditMaker {
     if (known.program.empty()) {
       add_plugin(known, parent, attributes);
     } else {
-      attributes.emplace_back(
-          "program", known.program.starts_with('/')
-                         ? "./" + reference_to(known.program, fs::path(design_.file).parent_path())
-                         : known.program);
+      attributes.emplace_back("program", program_reference(known.program));
     }
     return {"add " + name, "", source_.with_child(parent, "peer", attributes)};
   }

@@ -9,14 +9,14 @@
 
 namespace skein::command::compose {
 
-/// What a request does to the text of a mission.
+/// A change of the text of a mission.
 struct Edit {
   std::string label;  ///< In words.
   std::string key;    ///< As TextHistory::edit() has it.
   profile::Splice splice;
 };
 
-/// What edits rest on. Refers to it.
+/// The mission that is edited. Holds references.
 struct Edited {
   const profile::XmlSource& source;
   const DesignState& design;

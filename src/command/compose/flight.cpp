@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -21,7 +22,7 @@ constexpr int kLookMilliseconds = 200;
 constexpr std::size_t kKept = 4096;
 constexpr std::size_t kLongestLine = 512;
 
-/// What the launcher gives as its reason, or else its last line.
+/// The reason in the output of the launcher, or else its last line.
 std::string reason_in(const std::string& said) {
   constexpr std::string_view kReason = "skein: ";
   std::string last;
@@ -44,7 +45,13 @@ Flight::Flight(const std::vector<std::string>& words) {
   said_ = FileDescriptor(ends[0]);
   const FileDescriptor theirs(ends[1]);
   process_ = start_program(words, {-1, -1, theirs.get()}, Session::Own);
-  thread_ = start_thread("skein-flight", [this] { run(); });
+  try {
+    thread_ = start_thread("skein-flight", [this] { run(); });
+  } catch (const Error&) {
+    ::kill(process_, SIGTERM);  // nobody would watch it
+    ::waitpid(process_, nullptr, 0);
+    throw;
+  }
 }
 
 Flight::~Flight() {
@@ -57,36 +64,42 @@ std::string Flight::end() const {
   return end_;
 }
 
-void Flight::read() {
+/// False at the end of all that the launcher says.
+bool Flight::read() {
   std::array<char, 1024> part;
   const auto size = ::read(said_.get(), part.data(), part.size());
-  if (size <= 0) {
-    ::poll(nullptr, 0, kLookMilliseconds);  // it has closed it, and ends
-    return;
-  }
+  if (size < 0 && errno == EINTR) return true;
+  if (size <= 0) return false;
   std::lock_guard lock(mutex_);
   last_.append(part.data(), static_cast<std::size_t>(size));
   if (last_.size() > kKept) last_.erase(0, last_.size() - kKept);
+  return true;
 }
 
 void Flight::run() {
   int status = 0;
-  while (!forgotten_) {
+  pid_t ended = 0;
+  for (bool speaks = true; ended == 0;) {
+    if (forgotten_) return;
     pollfd readable{said_.get(), POLLIN, 0};
-    if (::poll(&readable, 1, kLookMilliseconds) > 0) {
-      read();
-    } else if (::waitpid(process_, &status, WNOHANG) == process_) {
-      break;
+    const bool has_said =
+        ::poll(speaks ? &readable : nullptr, speaks ? 1 : 0, kLookMilliseconds) > 0;
+    if (has_said) {
+      speaks = read();
+    } else {
+      ended = ::waitpid(process_, &status, WNOHANG);
     }
-    if ((readable.revents & POLLHUP) != 0 && ::waitpid(process_, &status, WNOHANG) == process_)
-      break;
   }
-  if (forgotten_) return;
   std::lock_guard lock(mutex_);
   const int code = exit_code_of(status);
-  end_ = code == 0 ? "ended well" : "ended with exit code " + std::to_string(code);
-  if (const std::string reason = reason_in(last_); code != 0 && !reason.empty())
-    end_ += ": " + reason;
+  const std::string reason = reason_in(last_);
+  if (ended < 0) {
+    end_ = "ended, nobody knows how";
+  } else if (code == 0) {
+    end_ = "ended well";
+  } else {
+    end_ = "ended with exit code " + std::to_string(code) + (reason.empty() ? "" : ": " + reason);
+  }
 }
 
 }  // namespace skein::command::compose

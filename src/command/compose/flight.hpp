@@ -22,18 +22,18 @@ class Flight {
   Flight(const Flight&) = delete;
   Flight& operator=(const Flight&) = delete;
 
-  /// How it has ended, in words, with what the launcher said at last; empty: it flies.
+  /// The end in words, with the reason that the launcher gives; empty: it flies.
   std::string end() const;
 
  private:
   void run();
-  void read();
+  bool read();
 
-  FileDescriptor said_;  // what the launcher says of itself, until it has ended
+  FileDescriptor said_;  // the launcher's standard error
   pid_t process_ = 0;
   std::atomic<bool> forgotten_{false};
   mutable std::mutex mutex_;
-  std::string last_;  // of what it said
+  std::string last_;  // the end of its output
   std::string end_;
   std::thread thread_;  // last: it uses the rest
 };

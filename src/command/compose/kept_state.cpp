@@ -39,7 +39,7 @@ fs::path KeptState::file(const char* kind) const {
   return state.empty() ? state : state / kind / mission_.relative_path();
 }
 
-Places KeptState::read_places() const {
+KeptState::Places KeptState::read_places() const {
   Places places;
   const auto kept = nlohmann::json::parse(read(file("places")).value_or(""), nullptr, false);
   if (!kept.is_object()) return places;
@@ -61,6 +61,10 @@ KeptState::KeptState(fs::path mission) : mission_(std::move(mission)) {
 std::optional<KeptState::Draft> KeptState::read_draft() {
   if (auto text = read(file("drafts"))) draft_ = Draft{std::move(*text), read(file("bases"))};
   return draft_;
+}
+
+fs::path KeptState::file_with(const std::string& text) const {
+  return draft_ && draft_->text == text ? file("drafts") : "";
 }
 
 void KeptState::keep_places(const Places& places) {

@@ -10,11 +10,9 @@
 
 namespace skein::command::compose {
 
-using Places = std::map<std::string, designer::Place>;
-
-/// What is remembered of a mission beside the user's other state, and is not in its file: where its
-/// boxes stand, and what was not saved when the program ended. A file that cannot be read tells
-/// nothing. One process at a time keeps those of a mission. Not thread-safe.
+/// The state of a mission that is not in its file, in the folder of the user's state: the places of
+/// boxes, and the changes that were unsaved when the program ended. An unreadable file counts as
+/// none. One process at a time keeps those of a mission. Not thread-safe.
 class KeptState {
  public:
   /// Throws Unavailable while another process keeps them.
@@ -22,9 +20,11 @@ class KeptState {
 
   struct Draft {
     std::string text;
-    std::optional<std::string> base;  ///< What the file had; nothing: there was none.
+    std::optional<std::string> base;  ///< The text of the file then; nullopt: there was none.
     bool operator==(const Draft&) const = default;
   };
+
+  using Places = std::map<std::string, designer::Place>;
 
   Places read_places() const;
   std::optional<Draft> read_draft();
@@ -34,8 +34,8 @@ class KeptState {
   void keep_places(const Places& places);
   /// Nothing: all is saved.
   void keep_draft(const std::optional<Draft>& draft);
-  /// Has the draft's text; empty: there is none.
-  std::filesystem::path draft_file() const { return draft_ ? file("drafts") : ""; }
+  /// The draft's file if it has that text; else empty.
+  std::filesystem::path file_with(const std::string& text) const;
 
  private:
   std::filesystem::path file(const char* kind) const;

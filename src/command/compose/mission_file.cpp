@@ -27,6 +27,8 @@ MissionFile::Disk MissionFile::disk() const {
     now = read_if_there(file_);
   } catch (const profile::DescriptionError&) {
     return Disk::Changed;
+  } catch (const Unavailable&) {  // nothing can be told for the moment
+    return Disk::Same;
   }
   if (now == saved_) return Disk::Same;
   return now ? Disk::Changed : Disk::Gone;
@@ -47,7 +49,7 @@ void MissionFile::save(bool over) {
 }
 
 void MissionFile::restore(const std::string& text, std::optional<std::string> base) {
-  history_.edit("take up what was not saved", "", profile::difference(history_.text(), text));
+  history_.edit(kRestored, "", profile::difference(history_.text(), text));
   saved_ = std::move(base);
 }
 

@@ -12,14 +12,13 @@ namespace skein::command::compose {
 /// A file that is edited, and may be edited by others meanwhile. Not thread-safe.
 class MissionFile {
  public:
-  /// What others have done to the file since it was read or written here.
+  /// The file, compared with its text when it was last read or written here.
   enum class Disk { Same, Changed, Gone };
 
   /// Reads the file; if there is none, it will have `text_if_new`. Throws DescriptionError as
   /// read_text_file().
   MissionFile(std::filesystem::path file, const std::string& text_if_new);
 
-  const std::filesystem::path& file() const noexcept { return file_; }
   const TextHistory& history() const noexcept { return history_; }
   TextHistory& history() noexcept { return history_; }
   const std::string& text() const noexcept { return history_.text(); }
@@ -27,7 +26,7 @@ class MissionFile {
   /// Whether the file has another text, as far as it was read or written here.
   bool is_changed() const { return saved_ != history_.text(); }
 
-  /// What the file has, as far as it was read or written here; nothing: there is none.
+  /// The text of the file when it was last read or written here; nullopt: there was none.
   const std::optional<std::string>& saved() const noexcept { return saved_; }
 
   Disk disk() const;
@@ -36,10 +35,13 @@ class MissionFile {
   /// write_whole_file().
   void save(bool over);
 
-  /// Takes up what was not saved to a file that had `base` then.
+  /// The label of restore().
+  static constexpr const char* kRestored = "take up unsaved changes";
+
+  /// Takes up changes that were not saved to the file, which had the text `base` then.
   void restore(const std::string& text, std::optional<std::string> base);
 
-  /// Takes what is on the disk in place of the text, as an edit. Throws DescriptionError.
+  /// Replaces the text by that of the file, as an edit. Throws DescriptionError.
   void load();
 
  private:

@@ -35,7 +35,7 @@ fs::path whole_path(const fs::path& path) {
   return failure ? fs::absolute(path).lexically_normal() : whole;
 }
 
-/// What the elements around one say.
+/// The folder and plugin that the elements around one give.
 struct Repository::Use {
   fs::path folder;
   std::string plugin;
@@ -46,7 +46,6 @@ void Repository::look() {
   uses_.clear();
   troubles_.clear();
   dictionary_.clear();
-  files_ = 0;
   for (const fs::path& folder : folders_) look_into(whole_path(folder));
   for (auto& [file, component] : components_) {
     const auto use = uses_.find(file);
@@ -56,6 +55,7 @@ void Repository::look() {
 }
 
 void Repository::look_into(const fs::path& folder) {
+  std::size_t files = 0;
   std::error_code failure;
   fs::recursive_directory_iterator at(folder, fs::directory_options::skip_permission_denied,
                                       failure);
@@ -68,15 +68,20 @@ void Repository::look_into(const fs::path& folder) {
   for (; at != fs::recursive_directory_iterator() && !failure; at.increment(failure)) {
     const std::string name = at->path().filename().string();
     if (name.starts_with('.') || at.depth() == kDeepest) at.disable_recursion_pending();
-    if (++files_ > kMostFiles) {
-      troubles_.push_back("only " + std::to_string(kMostFiles) + " files were looked at for " +
-                          "components: name their folders with --components");
+    if (++files > kMostFiles) {
+      troubles_.push_back("only " + std::to_string(kMostFiles) + " files of " +
+                          printable(folder.string()) + " were looked at for components: name " +
+                          "their folders with --components");
       break;
     }
     std::error_code ignored;
     if (at->path().extension() == ".xml" && at->is_regular_file(ignored) &&
         at->file_size(ignored) <= kLargest)
       found.push_back(at->path());
+  }
+  if (failure) {
+    troubles_.push_back("not all of the folder " + printable(folder.string()) +
+                        " could be read: " + failure.message());
   }
   std::ranges::sort(found);
   for (const fs::path& file : found) read(whole_path(file));

@@ -25,7 +25,7 @@ class Repository {
  public:
   explicit Repository(std::vector<std::filesystem::path> folders) : folders_(std::move(folders)) {}
 
-  /// Looks what is there now.
+  /// Reads the folders anew.
   void look();
 
   const std::map<std::filesystem::path, KnownComponent>& components() const noexcept {
@@ -48,7 +48,6 @@ class Repository {
   std::map<std::filesystem::path, std::pair<std::string, std::string>> uses_;  // plugin, program
   std::filesystem::path dictionary_;
   std::vector<std::string> troubles_;
-  std::size_t files_ = 0;  // that were looked at
 };
 
 /// A path in which links, `.` and `..` are resolved, as far as it is there.

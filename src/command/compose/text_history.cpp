@@ -14,6 +14,7 @@ void TextHistory::edit(const std::string& label, const std::string& key,
     whole = profile::difference(text_, after);
   }
   edits_.resize(done_);
+  last_change_ = splice;
   if (whole.removed == 0 && whole.inserted.empty()) {  // typed, and taken back
     text_ = std::move(after);
     return;
@@ -24,18 +25,24 @@ void TextHistory::edit(const std::string& label, const std::string& key,
   sealed_ = false;
 }
 
-void TextHistory::undo() {
-  if (done_ == 0) return;
+std::string TextHistory::undo() {
+  std::string label = undo_label();
+  if (label.empty()) return label;
   const Edit& edit = edits_[--done_];
   text_.replace(edit.at, edit.inserted.size(), edit.removed);
+  last_change_ = {edit.at, edit.inserted.size(), edit.removed};
   sealed_ = true;
+  return label;
 }
 
-void TextHistory::redo() {
-  if (done_ == edits_.size()) return;
+std::string TextHistory::redo() {
+  std::string label = redo_label();
+  if (label.empty()) return label;
   const Edit& edit = edits_[done_++];
   text_.replace(edit.at, edit.removed.size(), edit.inserted);
+  last_change_ = {edit.at, edit.removed.size(), edit.inserted};
   sealed_ = true;
+  return label;
 }
 
 }  // namespace skein::command::compose

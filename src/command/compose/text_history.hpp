@@ -16,17 +16,21 @@ class TextHistory {
 
   const std::string& text() const noexcept { return text_; }
 
-  /// `label` says what was done. An edit with the `key` of the one before becomes one with it, so
-  /// that what a person types is undone at once; one without a key never does.
+  /// `label` names the edit for people. Successive edits with one `key` become one edit, so that
+  /// one undo takes back a whole word; edits with an empty key stay apart.
   void edit(const std::string& label, const std::string& key, const profile::Splice& splice);
   /// The next edit is one of its own.
   void seal() { sealed_ = true; }
 
-  /// The edit that undo() and redo() would change; empty: there is none, and they do nothing.
+  /// The splice that has led to the present text; empty: the text is the first one.
+  const profile::Splice& last_change() const noexcept { return last_change_; }
+
+  /// The edit that undo() and redo() would change; empty: there is none.
   std::string undo_label() const { return done_ == 0 ? "" : edits_[done_ - 1].label; }
   std::string redo_label() const { return done_ == edits_.size() ? "" : edits_[done_].label; }
-  void undo();
-  void redo();
+  /// Return the label. Nothing happens without one.
+  std::string undo();
+  std::string redo();
 
  private:
   struct Edit {
@@ -41,6 +45,7 @@ class TextHistory {
   std::vector<Edit> edits_;
   std::size_t done_ = 0;  // so many of them are in the text
   bool sealed_ = false;
+  profile::Splice last_change_;
 };
 
 }  // namespace skein::command::compose

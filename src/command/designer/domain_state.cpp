@@ -21,7 +21,7 @@ constexpr int kSilentLooks = 2;
 
 using Entities = std::map<std::string, EntityState>;
 
-/// Where a provider's service stands in the drawing.
+/// The place of a provider's service in the drawing.
 struct ServicePlace {
   std::string entity;
   std::size_t index;

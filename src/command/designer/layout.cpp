@@ -66,7 +66,7 @@ Drawing drawing_of(const std::vector<EntityState>& entities, const std::vector<L
   return drawing;
 }
 
-/// Where some boxes stand, from a corner of their own on.
+/// Places of some boxes, relative to their common corner.
 struct Arrangement {
   std::map<std::size_t, Place> places;
   double width = 0;
@@ -76,7 +76,7 @@ struct Arrangement {
   double size() const { return std::max(width / 4, height / 3); }
 };
 
-/// Adds boxes in rows below what is there.
+/// Adds boxes in rows below all others.
 void add_rows(const Drawing& drawing, const Boxes& boxes, Arrangement& made) {
   const auto columns = std::max(
       std::size_t{5},

@@ -32,7 +32,7 @@ struct Drawing {
 /// side by side. Throws as run_dot().
 std::vector<Place> places_by_graphviz(const Drawing& drawing);
 
-/// Where the boxes of a page stand. A box keeps its place as long as it is shown, and newcomers
+/// The places of the boxes of a page. A box keeps its place as long as it is shown, and newcomers
 /// come near those that they speak to; only if a third are newcomers, or twice as many lines are
 /// known, and nobody has moved anything, all are placed anew. Not thread-safe.
 class Layout {
@@ -49,7 +49,7 @@ class Layout {
   void move(const std::string& entity, Place to);
   /// The same of one that is to come.
   void place(const std::string& entity, Place at);
-  /// It stays where it is.
+  /// Its place stays.
   void rename(const std::string& entity, const std::string& to);
   /// All are placed anew the next time.
   void forget();

@@ -14,7 +14,7 @@
 
 namespace skein::command::designer {
 
-/// A domain as a page shows it, with what the page may do there. look() and rest() are one
+/// A domain as a page shows it, with the actions that the page offers. look() and rest() are one
 /// thread's; others may call the rest meanwhile.
 class LiveDomain {
  public:
@@ -29,8 +29,11 @@ class LiveDomain {
   void rest() { watch_.reset(); }
   bool rests() const { return !watch_; }
 
+  bool is_of(std::uint32_t domain, const Plan& plan) const {
+    return domain == domain_ && plan == plan_;
+  }
   Actions actions();
-  /// Where boxes stand, if they come.
+  /// Places for boxes that will appear.
   void place(std::map<std::string, Place> places);
 
  private:

@@ -111,7 +111,7 @@ void PageHub::answer(std::uint64_t client, std::string text) {
   place->second.connection->wake();
 }
 
-/// The state first: what a request has done is there when its answer comes.
+/// The state first, so that a client sees the effect of its request when the answer comes.
 std::optional<view::Frame> PageHub::next(std::uint64_t client) {
   std::lock_guard lock(mutex_);
   Place& place = clients_.at(client);

@@ -19,8 +19,9 @@ namespace skein::command::designer {
 /// the answers to its requests. Thread-safe; no function waits for a client.
 class PageHub : public std::enable_shared_from_this<PageHub> {
  public:
-  /// Carries out a request and returns the answer; what it throws is the answer, too. Called on
-  /// threads of the hub: those of one kind one after the other, unless they may wait for others.
+  /// Carries out a request and returns the answer; the text of an exception is the answer, too.
+  /// Called on threads of the hub: those of one kind one after the other, unless they may wait for
+  /// others.
   struct Obey {
     std::function<std::string(std::string_view request)> obey;
     std::function<bool(std::string_view request)> may_wait;
@@ -68,7 +69,7 @@ class PageHub : public std::enable_shared_from_this<PageHub> {
   void leave(std::uint64_t client);
 
   const Obey obey_;
-  mutable std::mutex mutex_;  // of what follows, but the executor
+  mutable std::mutex mutex_;  // of all members below, but the executor
   std::map<std::uint64_t, Place> clients_;
   std::uint64_t last_client_ = 0;
   std::array<State, 2> states_;  // by kind

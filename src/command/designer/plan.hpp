@@ -15,6 +15,7 @@ struct Plan {
     std::string name;     ///< Canonical name of the interface.
     std::string csp;      ///< Empty: the entity's public service.
     std::string process;  ///< The launcher's name for a process of its own; else empty.
+    bool operator==(const Service&) const = default;
   };
   struct Entity {
     std::string name;  ///< `system/entity`
@@ -22,9 +23,11 @@ struct Plan {
     std::string process;
     std::vector<Service> services;
     std::vector<std::string> dependencies;  ///< Interfaces of others.
+    bool operator==(const Entity&) const = default;
   };
   std::string file;
   std::vector<Entity> entities;
+  bool operator==(const Plan&) const = default;
 };
 
 Plan plan_of(const profile::MissionProfile& mission);

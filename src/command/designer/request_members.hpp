@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -9,7 +10,7 @@
 
 namespace skein::command::designer {
 
-/// What a page asks for, as JSON. Throws InvalidArgument for what is no object.
+/// A request of a page, as JSON. Throws InvalidArgument for other values than objects.
 inline nlohmann::json request_of(std::string_view text) {
   auto request = nlohmann::json::parse(text, nullptr, false);
   if (!request.is_object()) throw InvalidArgument("a request is a JSON object");
@@ -34,6 +35,12 @@ inline double number_of(const nlohmann::json& request, const char* name, double 
   const nlohmann::json& value = member(request, name);
   if (value.is_number() && std::abs(value.get<double>()) <= most) return value.get<double>();
   throw InvalidArgument(std::string("the member '") + name + "' is no number, or too great");
+}
+
+inline std::uint64_t count_of(const nlohmann::json& request, const char* name) {
+  const nlohmann::json& value = member(request, name);
+  if (value.is_number_unsigned()) return value.get<std::uint64_t>();
+  throw InvalidArgument(std::string("the member '") + name + "' is no whole number");
 }
 
 /// Farther away nobody finds a box again.

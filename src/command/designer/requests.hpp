@@ -18,8 +18,8 @@ struct Actions {
 
 /// Carries out a request, a JSON object: `{"request": 7, "do": "restart", "launcher": 4711,
 /// "process": "navigator"}`, `stop` with a launcher, `kill` and `hang` as `restart`, `move` with
-/// `entity`, `x` and `y`, and `arrange`. Returns what was done, in words. Throws InvalidArgument
-/// for a request that is none, and what `actions` throw.
+/// `entity`, `x` and `y`, and `arrange`. Returns the effect in words. Throws InvalidArgument for
+/// other requests, and passes on the exceptions of `actions`.
 std::string obey(std::string_view request, const Actions& actions);
 
 /// Whether it asks a launcher, which may take some seconds to answer.

@@ -45,7 +45,7 @@ class Site {
     Json times{};
     /// Of a mission that is composed, all that there is to say; null: none is.
     std::function<Json()> design{};
-    /// What may stand in one, as an XML schema.
+    /// The XML schema of missions.
     std::string_view schema{};
   };
 
@@ -74,7 +74,7 @@ struct SiteOptions {
   std::string token;                                ///< Empty: a random one.
   bool no_browser = false;                          ///< Opens none.
   std::size_t max_message = std::size_t{64} << 10;  ///< In bytes, of a client.
-  std::string rights;                               ///< What those who know the URL may, in words.
+  std::string rights;                               ///< The rights that the URL gives, in words.
 };
 
 /// A site on loopback; prints its URL. Throws as Site and view::WebSocketListener.

@@ -66,24 +66,30 @@ int exit_code_of(int wait_status) {
   return WIFSIGNALED(wait_status) ? 128 + WTERMSIG(wait_status) : WEXITSTATUS(wait_status);
 }
 
-ProgramEnd run_program(std::span<const std::string> words, std::chrono::seconds limit) {
+ProgramEnd run_program(std::span<const std::string> words, std::chrono::seconds limit,
+                       const std::function<bool()>& gives_up) {
   // Files, not pipes: nobody has to read both at once.
   const FileDescriptor output(::memfd_create("output", MFD_CLOEXEC));
   const FileDescriptor errors(::memfd_create("errors", MFD_CLOEXEC));
   if (output.get() < 0 || errors.get() < 0)
     throw Unavailable(std::string("no memory for what a program prints: ") + std::strerror(errno));
-  const pid_t process = start_program(words, {-1, output.get(), errors.get()});
-  const auto give_up = std::chrono::steady_clock::now() + limit;
+  const pid_t process = start_program(words, {-1, output.get(), errors.get()}, Session::Own);
+  const auto end = std::chrono::steady_clock::now() + limit;
   int status = 0;
-  while (::waitpid(process, &status, WNOHANG) == 0) {
-    if (std::chrono::steady_clock::now() > give_up) {
+  pid_t ended = 0;
+  while ((ended = ::waitpid(process, &status, WNOHANG)) == 0) {
+    const bool too_long = std::chrono::steady_clock::now() > end;
+    if (too_long || gives_up()) {
       ::kill(process, SIGKILL);
       ::waitpid(process, &status, 0);
-      throw Unavailable("`" + words.front() + "` takes longer than " +
-                        std::to_string(limit.count()) + " s");
+      throw Unavailable("`" + words.front() + "` " +
+                        (too_long ? "takes longer than " + std::to_string(limit.count()) + " s"
+                                  : std::string("was given up")));
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
+  if (ended < 0)
+    throw Unavailable("the end of `" + words.front() + "` is not told: " + std::strerror(errno));
   return {exit_code_of(status), content_of(output), content_of(errors)};
 }
 

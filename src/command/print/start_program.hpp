@@ -3,6 +3,7 @@
 #include <sys/types.h>
 
 #include <chrono>
+#include <functional>
 #include <span>
 #include <string>
 
@@ -33,8 +34,10 @@ struct ProgramEnd {
   std::string errors;
 };
 
-/// Runs a program to its end. Throws as start_program(), and Unavailable if it takes longer.
-ProgramEnd run_program(std::span<const std::string> words, std::chrono::seconds limit);
+/// Runs a program to its end, in a session of its own. Throws as start_program(), and Unavailable
+/// if it takes longer or `gives_up` returns true, which end it, or if its end cannot be told.
+ProgramEnd run_program(std::span<const std::string> words, std::chrono::seconds limit,
+                       const std::function<bool()>& gives_up);
 
 /// As the shell has it.
 int exit_code_of(int wait_status);

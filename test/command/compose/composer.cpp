@@ -1,4 +1,4 @@
-// A mission while it is composed: what each request makes of its text, and of what the page shows.
+// A mission while it is composed: the effect of each request on its text and on the page.
 #include "command/compose/composer.hpp"
 
 #include <sys/stat.h>
@@ -60,10 +60,11 @@ class Desk {
 
   void open() {
     composer.reset();
-    composer.emplace(Composer::Options{file, {folder.path()}}, [](const auto&) {});
+    composer.emplace(Composer::Options{file, {folder.path()}},
+                     [this](const auto& published) { json = published; });
   }
 
-  DesignState state() const { return idl::from_json<DesignState>(*composer->state()); }
+  DesignState state() const { return idl::from_json<DesignState>(*json); }
 
   std::string ask(const std::string& what, Json members = Json::object()) {
     members["do"] = what;
@@ -102,6 +103,7 @@ class Desk {
 
   TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "mission.xml";
+  std::shared_ptr<const std::string> json;
   std::optional<Composer> composer;
 };
 
@@ -213,12 +215,28 @@ TEST_CASE("what is typed is undone at once, what is chosen one by one, and all i
   CHECK(desk.state().redo.empty());
 }
 
-TEST_CASE("an edit that was meant for an older text is refused") {
+TEST_CASE("an edit that others have overtaken means the element that it meant") {
   Desk desk;
   desk.open();
+  for (int i = 0; i < 3; ++i) desk.add("watcher.xml");
   const std::uint64_t version = desk.state().version;
-  desk.add("watcher.xml");
-  CHECK_THROWS_AS(desk.ask("remove", {{"element", 1}, {"version", version}}), Unavailable);
+  const auto rename = [&](int element, const char* name) {
+    desk.ask("set",
+             {{"element", element}, {"attribute", "name"}, {"value", name}, {"version", version}});
+  };
+  rename(1, "a longer name than it had");
+  desk.ask("remove", {{"element", 2}, {"version", version}});
+  rename(3, "third");
+  CHECK(desk.state().entities.size() == 2);
+  CHECK(desk.entity("default/third").name == "default/third");
+  CHECK_THROWS_WITH(rename(2, "nobody"), Contains("the element is gone"));
+  desk.ask("undo");
+  desk.ask("undo");
+  CHECK_THROWS_WITH(rename(2, "nobody"), Contains("the element is gone"));
+  rename(3, "last");
+  CHECK(desk.entity("default/last").name == "default/last");
+  CHECK_THROWS_AS(desk.ask("text", {{"text", "<mission/>"}, {"version", version}}), Unavailable);
+  CHECK_THROWS_WITH(rename(9, "nobody"), Contains("the element is gone"));
 }
 
 TEST_CASE("what others write meanwhile is told, never overwritten unasked, and can be taken") {
@@ -287,8 +305,8 @@ TEST_CASE("what was not saved is there again when the program ends, however it d
   const std::string unsaved = desk.state().text;
   desk.open();
   CHECK(desk.state().text == unsaved);
-  CHECK(desk.state().undo == "take up what was not saved");
-  CHECK_THAT(desk.state().troubles.at(0), Contains("was not saved last time"));
+  CHECK(desk.state().undo == "take up unsaved changes");
+  CHECK_THAT(desk.state().troubles.at(0), Contains("unsaved changes of the last time"));
   desk.ask("save");
   desk.open();
   CHECK(desk.state().undo.empty());
@@ -363,9 +381,9 @@ TEST_CASE("what only this machine tells takes the place of the findings, for tha
   const auto unchecked = desk.composer->unchecked();
   REQUIRE(unchecked);
   CHECK(content(unchecked->file) == desk.state().text);
-  desk.composer->tell_check(
-      unchecked->version,
-      {{profile::Severity::Error, {desk.file.string(), 3, 3}, "there is no plugin 'boats'", ""}});
+  const profile::Finding missing{
+      profile::Severity::Error, {desk.file.string(), 3, 3}, "there is no plugin 'boats'", ""};
+  desk.composer->tell_check(unchecked->version, {{missing}});
   CHECK(desk.state().checked);
   CHECK(desk.entity("default/watcher").reason == "there is no plugin 'boats'");
   CHECK_FALSE(desk.composer->unchecked());
@@ -373,6 +391,39 @@ TEST_CASE("what only this machine tells takes the place of the findings, for tha
   CHECK(desk.errors().empty());
   desk.composer->tell_check(unchecked->version, {});
   CHECK_FALSE(desk.state().checked);
+  desk.composer->tell_check(desk.state().version, {{}, "it takes too long"});
+  CHECK_FALSE(desk.state().checked);
+  CHECK(desk.state().troubles == std::vector<std::string>{"it takes too long"});
+  CHECK_FALSE(desk.composer->unchecked());
+  desk.ask("look");  // as for a plugin that has been built meanwhile
+  CHECK(desk.composer->unchecked());
+  desk.folder.write("mission.xml", "<mission name=\"theirs\"/>");
+  CHECK(content(desk.composer->unchecked()->file) == desk.state().text);
+}
+
+TEST_CASE("through another's name, and a text that is no mission, boxes keep their places") {
+  Desk desk;
+  desk.open();
+  desk.add("watcher.xml", {{"x", 300}, {"y", 40}});
+  desk.add("watcher.xml", {{"x", 500}, {"y", 80}});
+  for (const char* name : {"watche", "watcher", "watchers"})
+    desk.ask("set", {{"element", 2}, {"attribute", "name"}, {"value", name}});
+  CHECK(desk.entity("default/watcher").x == 300);
+  desk.ask("text", {{"text", "<mission"}});
+  desk.open();
+  desk.ask("look");
+  desk.ask("text", {{"text",
+                     "<mission name=\"m\" dictionary=\"dictionary.xml\"><peer name=\"watcher\" "
+                     "component=\"watcher.xml\"/></mission>"}});
+  CHECK(desk.entity("default/watcher").x == 300);
+}
+
+TEST_CASE("line ends of a file stay while its text is edited") {
+  Desk desk;
+  desk.folder.write("mission.xml", "<mission name=\"m\">\r\n</mission>\r\n");
+  desk.open();
+  desk.ask("text", {{"text", "<mission name=\"n\">\n</mission>\n"}});
+  CHECK(desk.state().text == "<mission name=\"n\">\r\n</mission>\r\n");
 }
 
 TEST_CASE("an entity that is removed and comes back stands where it stood") {
@@ -445,7 +496,7 @@ TEST_CASE("any edits, undone, done again and saved, leave the text that they sho
     Desk desk;
     desk.folder.write("mission.xml", kMissionText);
     desk.open();
-    std::vector<std::string> texts{kMissionText};  // what undo goes back through
+    std::vector<std::string> texts{kMissionText};  // by step
     std::size_t now = 0;
     std::string saved = kMissionText;
     const auto edit = [&](const std::string& what, const Json& members) {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-/// A mission as a person writes it: with comments, blanks, a part, and what Skein does not know.
+/// A mission as a person writes it: with comments, blanks, a part, and names unknown to Skein.
 inline const std::string kMissionText = R"(<?xml version="1.0" encoding="UTF-8"?>
 <!-- Two of each. -->
 <mission name="survey"   domain='7' dictionary="dictionary.xml"

@@ -3,6 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
+import WebSocket from "ws";
 import { complaints, demandAccessible, endAll, folder, openBrowser, openPage, run, runDesigner, sources, until } from "./page_tools.mjs";
 
 const profiles = `${sources}/mission_profiles`;
@@ -139,7 +140,7 @@ async function compose(person, file) {
       await person.openTab("Edit");
       await until(async () => (await errors()).every((each) => each.includes("depends on recon/IFlightSimulator")) && (await errors()).length > 0);
       await box("ground_station").locator(".needed", { hasText: "needs IFlightSimulator" }).waitFor();
-      assert.match(await page.locator("#summary").textContent(), /13 entities|12 entities, \d errors?/);
+      assert.match(await page.locator("#summary").textContent(), /12 entities, \d errors?$/);
     }
     await addEntity(person, entity);
     await fillEntity(person, entity);
@@ -217,6 +218,43 @@ test("text that is typed changes the drawing, and what is wrong in it is told wi
   await page.locator("#summary", { hasText: "complete: nothing is missing" }).waitFor();
 });
 
+test("text that is typed over another's edit is refused, and stays until it is discarded", async () => {
+  await mouse.openTab("Text");
+  const area = page.locator("#composing textarea"), text = await area.inputValue();
+  await page.evaluate(() => Object.assign(window, { wait: window.setTimeout, setTimeout: () => 0 })); // so that nothing is sent yet
+  await area.fill(`${text}<!-- mine`);
+  const { version } = await told();
+  const other = new WebSocket(`${designer.url.replace("http", "ws")}socket`);
+  other.on("open", () => other.send(JSON.stringify({ request: 1, do: "set", element: 0, attribute: "domain", value: "38", version })));
+  await until(async () => (await told()).version > version);
+  await page.evaluate(() => Object.assign(window, { setTimeout: window.wait }));
+  await area.fill(`${text}<!-- mine -->`);
+  await page.locator("#composing .answer.bad", { hasText: "the mission was changed meanwhile" }).waitFor();
+  assert.equal(await area.inputValue(), `${text}<!-- mine -->`);
+  await page.getByRole("button", { name: "Discard what is typed here" }).click();
+  await until(async () => (await area.inputValue()) === text.replace('domain="37"', 'domain="38"'));
+  await page.locator("#undo").click();
+  await until(async () => (await area.inputValue()) === text);
+  other.close();
+});
+
+test("an edit that waits for another one finds its element", async () => {
+  const before = await told(), gone = [2, 5].map((i) => before.entities[i].name);
+  await page.evaluate((names) => {
+    for (const name of names) {
+      const head = document.querySelector(`.box[data-id="${name}"] .head`);
+      head.focus();
+      head.dispatchEvent(new KeyboardEvent("keydown", { key: "Delete", bubbles: true }));
+    }
+  }, gone);
+  await until(async () => (await told()).entities.length === before.entities.length - 2);
+  const names = (await told()).entities.map((each) => each.name);
+  assert.deepEqual(names, before.entities.map((each) => each.name).filter((each) => !gone.includes(each)));
+  await page.locator("#undo").click();
+  await page.locator("#undo").click();
+  await until(async () => (await told()).text === before.text);
+});
+
 test("a component that is dropped on a box becomes its CSP, if it fits, and an entity elsewhere, at that place", async () => {
   await mouse.openTab("Add");
   const search = page.getByRole("searchbox", { name: "Find a component" });
@@ -261,6 +299,19 @@ test("it is launched from the page and watched; a CSP is killed, and its replace
   await row.getByRole("button", { name: "Yes" }).click();
   await row.getByText("was restarted once, last ended by signal 9 (Killed)").waitFor();
   await until(async () => /process \d+/.test(await row.locator("small").textContent()));
+});
+
+test("keys do nothing to the plan while the mission is watched", async () => {
+  const { text } = await told();
+  await box("nhp").locator(".head").focus();
+  await page.keyboard.press("Delete");
+  await page.keyboard.press("Control+Z");
+  await page.locator("#arrange").click();
+  await page.locator("#watch").click();
+  await page.locator("#composing").waitFor();
+  assert.equal((await told()).text, text);
+  await page.locator("#watch").click();
+  await until(async () => (await page.locator(".box.ready").count()) === 13);
 });
 
 test("it is stopped, and the plan tells how it has ended", async () => {

@@ -1,4 +1,4 @@
-// What the page of `skein designer` is told of a domain.
+// The state of a domain that the page of `skein designer` receives.
 #include "command/designer/domain_state.hpp"
 
 #include <catch2/catch.hpp>

@@ -1,4 +1,4 @@
-// What the clients of `skein designer` are sent.
+// The messages to the clients of `skein designer`.
 #include "command/designer/page_hub.hpp"
 
 #include <catch2/catch.hpp>
@@ -18,7 +18,7 @@ std::shared_ptr<const std::string> text(std::string of) {
   return std::make_shared<const std::string>(std::move(of));
 }
 
-/// A hub whose clients are let in without a token.
+/// A hub that admits clients without a token.
 class OpenHub {
  public:
   using Obey = std::function<std::string(std::string_view)>;

@@ -1,4 +1,4 @@
-// Who may see the page of `skein designer`, and what of it.
+// Access to the page of `skein designer`.
 #include "command/designer/site.hpp"
 
 #include <catch2/catch.hpp>

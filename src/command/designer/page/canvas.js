@@ -23,7 +23,7 @@ export class Canvas {
     this.view = view;
     this.act = act;
     this.pan = { x: 0, y: 0, zoom: 1 };
-    /** Whether the user has chosen what is in view. */
+    /** Whether the user has moved the view. */
     this.isPlaced = false;
     this.shown = "";
     this.selected = "";
@@ -31,14 +31,14 @@ export class Canvas {
     this.boxes = [];
     /** @type {Line[]} */
     this.lines = [];
-    /** Where labels stand. @type {{x: number, y: number}[]} */
+    /** Places of labels. @type {{x: number, y: number}[]} */
     this.labelled = [];
     /** Fingers, by pointer, and how far two of them are apart. @type {Map<number, {x: number, y: number}>} */
     this.fingers = new Map();
     this.spread = 0;
     /** Boxes that were moved, until the server has told their new place. @type {Map<string, {x: number, y: number, until: number}>} */
     this.moved = new Map();
-    /** How long that takes at most, in milliseconds; for ever, where there is no server that keeps places. */
+    /** Milliseconds that a moved box waits for the server; for ever in a replay, which keeps no places. */
     this.patience = 4000;
     this.elements = /** @type {Map<string, HTMLElement>} */ (new Map());
     this.paths = /** @type {Map<string, {path: SVGElement, label: SVGElement}>} */ (new Map());
@@ -123,7 +123,7 @@ export class Canvas {
       (row, each) => (each ? updateRow(row, each, entity ? this.lastChosen(entity.name, each) : "") : this.updateHead(row, entity?.name ?? "")));
   }
 
-  /** The Head with what it has decided last. @param {HTMLElement} row @param {string} entity */
+  /** The Head with its last decision. @param {HTMLElement} row @param {string} entity */
   updateHead(row, entity) {
     const last = this.state?.decisions.findLast((each) => each.entity === entity);
     setText(row.children[0], "Head");

@@ -1,4 +1,4 @@
-// Composing a mission: components to choose from, forms, what is wrong, and the text itself.
+// Composing a mission: components, forms, findings, and the text itself.
 import { childrenOf, componentOf, entityAt, fits, given, isCsp, isIn, summaryOf } from "./design.js";
 import { h, set, setText, sync } from "./element.js";
 import { Form } from "./form.js";
@@ -8,7 +8,7 @@ import { counted, short } from "./words.js";
 /** @typedef {import("./design.js").DesignState} DesignState */
 /** @typedef {import("./design.js").ComponentState} ComponentState */
 
-/** Milliseconds without a key, until what is typed is sent. */
+/** Milliseconds after the last key, until the input is sent. */
 const typingPause = 250;
 const dragType = "text/x-skein-component";
 
@@ -34,7 +34,7 @@ export class Composer {
     this.formNumber = 0;
     /** Edits are sent one after the other, each for the text that the one before has made. @type {Promise<boolean>} */
     this.queue = Promise.resolve(true);
-    /** What is typed and not yet sent. @type {{what: string, members: Record<string, any>, timer: ReturnType<typeof setTimeout>}|null} */
+    /** Input that is not sent yet. @type {{what: string, members: Record<string, any>, timer: ReturnType<typeof setTimeout>}|null} */
     this.typed = null;
     this.answer = h("p", { class: "answer", role: "status" });
     this.tabs = new Tabs($("composing"), "Composing", ["Add", "Edit", "Mission", "Problems", "Changes", "Text"], () => this.draw(), this.answer);
@@ -44,8 +44,11 @@ export class Composer {
     this.list = h("ul", { class: "list" });
     this.tabs.page("Add").append(this.search, this.homeLabel, this.list, h("p", { class: "hint" },
       "Drag one to the drawing or to a box, or press its button. Another folder: --components FOLDER."));
-    this.text = /** @type {HTMLTextAreaElement} */ (h("textarea", { "aria-label": "The mission's XML", spellcheck: "false", oninput: () => this.type("text", { text: this.text.value }) }));
-    this.tabs.page("Text").append(this.text);
+    this.text = /** @type {HTMLTextAreaElement} */ (h("textarea", { "aria-label": "The mission's XML", spellcheck: "false", oninput: () => this.typeText() }));
+    /** The version of the mission's text from which the one in the field has come; 0: nobody has typed there. */
+    this.textVersion = 0;
+    this.takeText = h("button", { type: "button", onclick: () => this.discardText() }, "Discard what is typed here");
+    this.tabs.page("Text").append(this.text, h("p", { class: "acts" }, this.takeText));
     for (const [id, what] of [["undo", "undo"], ["redo", "redo"], ["save", "save"]]) $(id).onclick = () => this.run(what, {});
     $("launch").onclick = () => this.launch(watch);
     $("script").onclick = () => this.run("script", {});
@@ -70,7 +73,7 @@ export class Composer {
     this.draw();
   }
 
-  /** What was selected may have another name now. @param {DesignState} before @param {DesignState} now */
+  /** Selects the same entity under its new name. @param {DesignState} before @param {DesignState} now */
   follow(before, now) {
     const was = before.parts.findIndex((part) => part.entity === this.selected && !part.csp);
     const part = now.parts.length === before.parts.length ? now.parts[was] : undefined;
@@ -108,7 +111,32 @@ export class Composer {
     if (open === "Mission") this.mission(design);
     if (open === "Problems") this.problems(design);
     if (open === "Changes") this.changes(design);
-    if (open === "Text" && !this.typed && this.text.value !== design.text) this.text.value = design.text;
+    if (open === "Text") this.showText(design);
+  }
+
+  /** Input stays until the mission has it. @param {DesignState} design */
+  showText(design) {
+    const now = design.text.replace(/\r\n?/g, "\n"); // as a field has it
+    set(this.takeText, "hidden", !this.textVersion);
+    if (!this.textVersion && this.text.value !== now) this.text.value = now;
+  }
+
+  /** Refused, if somebody else has changed the mission since the first key. */
+  typeText() {
+    this.textVersion ||= this.design?.version ?? 0;
+    this.type("text", { text: this.text.value });
+  }
+
+  discardText() {
+    if (this.typed?.what === "text") clearTimeout(this.typed.timer), this.typed = null;
+    this.textVersion = 0;
+    this.draw();
+  }
+
+  /** @param {string} sent */
+  textIsTaken(sent) {
+    this.textVersion = this.text.value === sent ? 0 : this.design?.version ?? 0;
+    this.draw();
   }
 
   /** @param {DesignState} design */
@@ -155,7 +183,7 @@ export class Composer {
       sync(place, [what], (each) => each, () => h("p", { class: "hint" }));
       setText(place.children[0], what === "elsewhere" ? "It stands in a part of the profile, another file, or the text is no well-formed XML for the moment."
         : what === "line" ? this.selected.split("\n").slice(0, 2).map(short).join(" needs what these provide: ")
-          : "Select a box to change it, or add one from Components.");
+          : "Select a box to change it, or add one under Add.");
     });
   }
 
@@ -215,7 +243,7 @@ export class Composer {
 
   /** @param {(watches: boolean) => void} watch */
   async launch(watch) {
-    if (this.design?.changed) await this.run("save", {});
+    if (this.design?.changed && !(await this.run("save", {}))) return;
     if (await this.run("launch", {})) watch(true);
   }
 
@@ -244,6 +272,7 @@ export class Composer {
 
   /** Whether it was done. @param {string} what @param {Record<string, any>} members @param {boolean} [later] @returns {Promise<boolean>} */
   edit(what, members, later) {
+    members = { ...members, version: this.design?.version ?? 0 }; // in which the element has its number
     if (later) return this.type(what, members), Promise.resolve(true);
     this.flush();
     return this.run(what, members);
@@ -258,7 +287,7 @@ export class Composer {
     this.typed = { what, members, timer: setTimeout(() => this.flush(), typingPause) };
   }
 
-  /** Sends what was typed. */
+  /** Sends the input. */
   flush() {
     const typed = this.typed;
     if (!typed) return;
@@ -272,7 +301,8 @@ export class Composer {
     this.flush();
     this.queue = this.queue.then(async () => {
       try {
-        const text = await this.ask(what, { version: this.design?.version ?? 0, ...members });
+        const text = await this.ask(what, what === "text" ? { ...members, version: this.textVersion } : members);
+        if (what === "text") this.textIsTaken(members.text);
         if (!silent) this.tell(text, "answer");
         return true;
       } catch (error) {
@@ -291,6 +321,7 @@ export class Composer {
 
   /** @param {KeyboardEvent} event */
   key(event) {
+    if (!document.body.classList.contains("compose")) return; // the domain is shown
     const isField = event.target instanceof HTMLElement && event.target.matches("input, textarea, select");
     const key = event.ctrlKey || event.metaKey ? event.key.toLowerCase() : "";
     const what = key === "s" ? "save" : isField ? "" : key === "z" ? (event.shiftKey ? "redo" : "undo") : key === "y" ? "redo" : "";
@@ -338,7 +369,7 @@ export class Composer {
   }
 }
 
-/** Of one height, so that nothing moves below a pointer while what is wrong comes and goes. */
+/** Of one height, so that nothing moves below a pointer while findings come and go. */
 function makeFindings() {
   return h("div", { class: "findings", role: "group", "aria-label": "What is wrong", tabindex: "0" });
 }

@@ -1,4 +1,4 @@
-// What the server tells of a mission that is composed (design_state.idl), and what follows from it.
+// The design of a mission, as the server sends it (design_state.idl), with questions to it.
 import { short } from "./words.js";
 
 /** @typedef {{name: string, value: string}} GivenValue */
@@ -58,7 +58,7 @@ export function componentOf(design, part) {
   return part?.description ? design.components.find((each) => each.file === part.description) : undefined;
 }
 
-/** The entity in whose element a finding is; empty: in none. @param {DesignState} design @param {number} element */
+/** The entity of an element with a finding; empty: none. @param {DesignState} design @param {number} element */
 export function entityAt(design, element) {
   for (let at = element; at >= 0; at = design.elements[at].parent) {
     const part = design.parts.find((each) => each.element === at);
@@ -72,12 +72,12 @@ export function fits(owner, component) {
   return !component.failure && Boolean(owner?.subcomponents.some((slot) => component.interfaces.includes(slot)));
 }
 
-/** Whether all that a component implements is what others have CSPs for. @param {DesignState} design @param {ComponentState} component */
+/** Whether a component is of use only as a CSP of others. @param {DesignState} design @param {ComponentState} component */
 export function isCsp(design, component) {
   return component.interfaces.length > 0 && component.interfaces.every((each) => design.components.some((owner) => owner.subcomponents.includes(each)));
 }
 
-/** What a component is, in a line. @param {ComponentState} component */
+/** A component in a line. @param {ComponentState} component */
 export function summaryOf(component) {
   const list = (/** @type {string} */ what, /** @type {string[]} */ names) => (names.length ? `${what} ${names.map(short).join(", ")}` : "");
   return component.failure || [list("implements", component.interfaces), list("needs", component.dependencies), list("CSPs for", component.subcomponents),

@@ -5,7 +5,7 @@ import { short } from "./words.js";
 
 /** @typedef {import("./design.js").DesignState} DesignState */
 /** @typedef {import("./schema.js").Field} Field */
-/** What a form asks for. `later`: while somebody types. @typedef {(what: string, members: Record<string, any>, later?: boolean) => void} Edit */
+/** An edit; `later`: the user still types. @typedef {(what: string, members: Record<string, any>, later?: boolean) => void} Edit */
 
 /** Those that the form of an entity or CSP shows in a way of their own, and those that are boxes. */
 const apart = new Set(["parameter", "csp", "peer"]);

@@ -1,4 +1,4 @@
-// The page of `skein designer`: shows what the server tells, and asks it for what the user wants.
+// The page of `skein designer`: shows the server's state, and sends it the user's requests.
 import { set, setText } from "./element.js";
 import { Canvas } from "./canvas.js";
 import { Composer } from "./compose.js";
@@ -11,7 +11,7 @@ import { showTables } from "./table.js";
 import { clock, counted } from "./words.js";
 
 /** Milliseconds. */
-const oldAfter = 6000, firstRetry = 500, longestRetry = 5000, answerWithin = 15000;
+const oldAfter = 6000, firstRetry = 500, longestRetry = 5000, answerWithin = 15000, checkWithin = 90000;
 
 const $ = (/** @type {string} */ id) => /** @type {HTMLElement} */ (document.getElementById(id));
 
@@ -33,14 +33,14 @@ let lastRequest = 0;
 /** @type {Map<number, {resolve: (text: string) => void, reject: (error: Error) => void}>} */
 const requests = new Map();
 
-/** Asks the server for something; its answer in words. @param {string} what @param {Record<string, any>} members @returns {Promise<string>} */
+/** Sends a request; resolves to the answer in words. @param {string} what @param {Record<string, any>} members @returns {Promise<string>} */
 function ask(what, members) {
   return new Promise((resolve, reject) => {
     if (socket?.readyState !== WebSocket.OPEN) return reject(new Error("there is no connection to skein designer"));
     const request = ++lastRequest;
     requests.set(request, { resolve, reject });
     socket.send(JSON.stringify({ request, do: what, ...members }));
-    setTimeout(() => end(request, false, "skein designer does not answer"), answerWithin);
+    setTimeout(() => end(request, false, "skein designer does not answer"), ["launch", "script"].includes(what) ? checkWithin : answerWithin);
   });
 }
 
@@ -80,11 +80,11 @@ async function lookWhy() {
   tellConnection();
 }
 
-/** What is wrong with a recording. */
+/** The damage of a recording, in words. */
 let damage = "";
 let isReplay = false;
 
-/** Says so if what is shown is old. */
+/** Warns if the state is old. */
 function tellConnection() {
   const text = isReplay ? damage : socket?.readyState === WebSocket.OPEN || socket?.readyState === WebSocket.CONNECTING && !state
     ? state && (!design || watches) && Date.now() - heard > oldAfter ? `No news since ${clock(heard * 1e6)}.` : ""
@@ -169,7 +169,7 @@ function summarize(state) {
   setText($("shared"), `+ ${counted(shared.size, "shared topic")}`);
 }
 
-/** What the search has found, in words. */
+/** The result of the search, in words. */
 function foundText() {
   if (!view.search.trim() || asTable) return "";
   return `; ${canvas.boxes.filter((box) => shown && isFound(box, shown, view.search)).length} with '${view.search.trim()}'`;
@@ -205,9 +205,8 @@ const canvas = new Canvas($("canvas"), view, {
 });
 toggle("values", () => (view.values = !view.values));
 toggle("shared", () => (view.shared = !view.shared));
-$("watch").onclick = () => {
-  if (!watches) ask("watch", {}).catch(() => undefined); // the bar tells that there is no connection
-  watch(!watches);
+$("watch").onclick = async () => {
+  if (watches || await composer?.run("watch", {})) watch(!watches);
 };
 toggle("as-table", () => {
   asTable = !asTable;
@@ -219,7 +218,7 @@ $("fit").onclick = () => {
   canvas.isPlaced = false;
   canvas.fit();
 };
-$("arrange").onclick = () => ask("arrange", {}).then(() => {
+$("arrange").onclick = () => ask("arrange", design && watches ? { live: true } : {}).then(() => {
   canvas.moved.clear();
   canvas.isPlaced = false;
 }, () => undefined);

@@ -1,4 +1,4 @@
-// What is known of one thing, and what can be done to it.
+// The details of one entity, link or process, with its actions.
 import { h, set, setText, sync } from "./element.js";
 import { Tabs } from "./tabs.js";
 import { clock, counted, digits, latency, often, outcome, rate, short, size, stateText, time, tone } from "./words.js";

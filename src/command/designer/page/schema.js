@@ -1,9 +1,9 @@
-// What may stand in a mission, and what it means: the XML schema that editors use, read as forms need it.
+// The elements and attributes of a mission with their meaning, read from the XML schema for editors.
 
 /** @typedef {{name: string, required: boolean, group: string, documentation: string, fallback: string, choices: string[], hint: string}} Field */
 /** @typedef {{name: string, documentation: string, fields: Field[], children: string[]}} Kind */
 
-/** What groups of attributes are about. */
+/** The titles of groups of attributes. */
 const groups = /** @type {Record<string, string>} */ ({
   DefaultsOfPeers: "System, host and network", ProcessAttributes: "Process", ThreadAttributes: "Threads", HeadAttributes: "Choice among CSPs",
 });
@@ -30,7 +30,7 @@ export class Schema {
     return all(this.root, kind).find((each) => each.getAttribute("name") === name);
   }
 
-  /** What may stand in an element; null: nothing is known of it. @param {string} name @returns {Kind|null} */
+  /** The rules for an element; null: it is unknown. @param {string} name @returns {Kind|null} */
   kind(name) {
     const known = this.kinds.get(name);
     if (known) return known;

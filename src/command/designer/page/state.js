@@ -1,4 +1,4 @@
-// What the server tells (designer_state.idl), and what of it is drawn: boxes, and the lines between them.
+// The state of a domain, as the server sends it (designer_state.idl), and its boxes and lines.
 
 /** @typedef {{name: string, csp: string, state: string, reason: string, process: string, pid: number, cpu: number[], total: number,
  *   calls: number[], failed: number[], waiting: number, running: number, p50: number, p99: number}} ServiceState */
@@ -17,7 +17,7 @@
 /** @typedef {{domain: number, place: string, plan: string, faults: boolean, time: number, troubles: string[],
  *   missions: MissionStatus[], entities: EntityState[], links: Link[], decisions: DecisionNote[], log: LogNote[]}} DomainState */
 
-/** What the user has chosen. Names of folded systems end with a slash.
+/** The user's choices. Names of folded systems end with a slash.
  * @typedef {{values: boolean, shared: boolean, folded: Set<string>, search: string}} View */
 
 /** A box: an entity, or a system that is folded.
@@ -80,7 +80,7 @@ export function sharedTopics(state) {
  * @param {DomainState} state
  * @param {View} view
  * @param {Box[]} boxes
- * @param {string} selected A box whose links are all drawn; may be empty.
+ * @param {string} selected All links of this box are drawn; may be empty.
  * @returns {Line[]}
  */
 export function linesOf(state, view, boxes, selected) {
@@ -106,7 +106,7 @@ export function linesOf(state, view, boxes, selected) {
   return [...lines.values()];
 }
 
-/** Whether a box has what is looked for: 2 by its name, 1 by what it has. @param {Box} box @param {DomainState} state @param {string} search @returns {number} */
+/** How well a box matches a search: 2 by its name, 1 by its parts, 0 not. @param {Box} box @param {DomainState} state @param {string} search @returns {number} */
 export function isFound(box, state, search) {
   const wanted = search.trim().toLowerCase();
   if (!wanted) return 0;

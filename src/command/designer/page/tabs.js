@@ -2,7 +2,7 @@
 import { h, set, setText } from "./element.js";
 
 export class Tabs {
-  /** @param {HTMLElement} root @param {string} label @param {string[]} names @param {() => void} opened @param {...HTMLElement} above What stands over all pages. */
+  /** @param {HTMLElement} root @param {string} label @param {string[]} names @param {() => void} opened @param {...HTMLElement} above Elements above all pages. */
   constructor(root, label, names, opened, ...above) {
     this.names = names;
     this.opened = opened;

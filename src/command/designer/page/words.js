@@ -20,7 +20,7 @@ export function rate(rate) {
   return rate.length ? `${digits(rate[0])}/s` : "–";
 }
 
-/** How often, and where that is less than can be seen in a second, how many at all. @param {{rate?: number[], calls?: number[], total: number}} of */
+/** The rate; if it is too low to be seen in a second, the total. @param {{rate?: number[], calls?: number[], total: number}} of */
 export function often(of) {
   const now = of.rate ?? of.calls ?? [];
   return now.length && now[0] > 0 ? rate(now) : of.total ? `${of.total} so far` : "none yet";
