@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <variant>
 
 #include "skein/call.hpp"
@@ -83,7 +84,11 @@ class TaskFunction
 
  public:
   TaskFunction() = default;
-  using Base::Base;
+  // Not by `using Base::Base`, whose templates clang 14 does not find.
+  template <class Other>
+  requires(std::is_constructible_v<Base, Other> &&
+           !std::is_same_v<std::remove_cvref_t<Other>, TaskFunction>) TaskFunction(Other&& function)
+      : Base(std::forward<Other>(function)) {}
   template <class Other>
   requires(!std::is_constructible_v<Base, Other>) TaskFunction(Other&&) {
     static_assert(std::is_void_v<Other>,
