@@ -335,6 +335,9 @@ std::string Dictionary::suggestion(EntryKind kind, std::string_view unknown_name
            " (" + to_text(other->where) + "); define it as <" +
            (attribute ? "attribute" : "parameter") + "> there";
   }
+  if (entries_.empty())
+    return "define it in the dictionary, which is dictionary.xml beside the profile, or the file "
+           "that its attribute dictionary names";
   std::vector<std::string_view> names;
   for (const auto& entry : entries_) {
     if (entry.kind == kind) names.push_back(entry.name);

@@ -68,6 +68,9 @@ class MissionReader {
   Dictionary dictionary_of(const XmlElement& root, std::set<std::filesystem::path>& files) {
     const auto named = root.maybe_attribute("dictionary");
     const auto path = file_.parent_path() / (named ? named->value : "dictionary.xml");
+    std::error_code ignored;
+    if (!named && !std::filesystem::exists(std::filesystem::symlink_status(path, ignored)))
+      return {};
     try {
       const auto text = read_text_file(path);
       files.insert(path.lexically_normal());

@@ -171,6 +171,16 @@ TEST_CASE("A parameter that the peer's CSPs have, and not the peer, is set at th
   CHECK_NOTHROW(read_checked_profile(file, {}, {"h/Q.Time limit=1 s"}));
 }
 
+TEST_CASE("A mission without attributes and parameters needs no dictionary") {
+  ProfileFolder folder;
+  std::filesystem::remove(folder.path() / "dictionary.xml");
+  folder.write("c.xml", R"(<component name="C"/>)");
+  CHECK(folder.check(R"(<peer name="c" component="c.xml"/>)") == "");
+  CHECK_THAT(folder.check(R"(<peer name="c" component="c.xml">
+<parameter name="Speed" value="5"/></peer>)"),
+             Catch::Contains("define it in the dictionary, which is dictionary.xml beside the "));
+}
+
 TEST_CASE("A unit that nothing is converted into is a mistake of the dictionary") {
   ProfileFolder folder;
   folder.write("dictionary.xml", R"(<dictionary>
