@@ -5,6 +5,7 @@ import os
 import re
 import sys
 
+import component
 import names
 from back_end.ada_names import Clash
 from compilation import Compilation
@@ -88,4 +89,4 @@ def _name(path, folders):
     return os.path.basename(path)
 
 
-sys.exit(main())
+sys.exit(component.main(sys.argv[2:]) if sys.argv[1:2] == ["--component"] else main())

@@ -49,6 +49,16 @@ class Compilation:
     def accepted(self):
         return self._report.errors == 0
 
+    @property
+    def interfaces(self):
+        """Those that the file itself defines; of an accepted file."""
+        return self._built.interfaces
+
+    @property
+    def included_files(self):
+        """Whole paths of all files that an accepted file includes, and that declare something."""
+        return [os.path.abspath(path) for path in self._source.included.get(self._source.path, ()) if path in self._built.declaring]
+
     def write(self, folder, name, depfile=None, language="c++"):
         """Writes what is made of an accepted file below `folder`: for `a/x.idl` `a/x.dds.idl`, `a/x.idl.hpp` and `a/x.idl.cpp` (`.h` and `.c` for C); for
         Python `a/x_idl.py` and `a/x_idl.pyi`."""

@@ -108,6 +108,22 @@ struct CheckArguments : PlanArguments {
 /// as JSON on stdout.
 int check(const CheckArguments& arguments);
 
+struct NewComponentArguments {
+  std::string kind;  ///< `entity`, `csp` or `activity`.
+  std::string name;
+  std::string implements;  ///< An interface; empty: a new one.
+  std::string operations;  ///< Those of the new interface, in IDL; empty: an example.
+  std::vector<std::string> needs;
+  std::vector<std::string> csps;
+  std::vector<std::string> idl;      ///< Files with the interfaces.
+  std::vector<std::string> folders;  ///< In which IDL files are looked for.
+  std::string folder;  ///< In which the component gets its own; empty: the present one.
+};
+
+/// `skein new KIND NAME`: source, description and project of a new component. Becomes `skein-idl`,
+/// whose exit code is this process's. Throws Unavailable if that is not there.
+int begin_component(const NewComponentArguments& arguments);
+
 struct LaunchArguments : PlanArguments {
   bool dry_run = false;
   bool verbose = false;

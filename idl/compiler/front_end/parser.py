@@ -12,7 +12,7 @@ from report import native, suggestion
 _GRAMMAR = os.path.join(os.path.dirname(os.path.abspath(__file__)), "grammar.lark")
 _MOST_ERRORS = 20
 # Of the core data types (7.4.1), and what has always been reserved.
-_KEYWORDS = frozenset(
+KEYWORDS = frozenset(
     """any boolean case char const default double enum FALSE float long module native octet sequence short string struct switch TRUE typedef
     union unsigned void wchar wstring""".split()
 )
@@ -49,7 +49,7 @@ def _check_names(tree, source, report):
     """A keyword is no name, but for the parameters of annotations, as in ROS 2's `@value(default = …)`."""
     for around in tree.iter_subtrees():
         for token in around.children if around.data != "argument" else ():
-            if getattr(token, "type", "") == "IDENTIFIER" and token in _KEYWORDS:
+            if getattr(token, "type", "") == "IDENTIFIER" and token in KEYWORDS:
                 report.error(source.place(token.start_pos), _misused(token, around))
 
 

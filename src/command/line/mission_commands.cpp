@@ -145,6 +145,56 @@ void add_peer(CLI::App& app, int& result) {
       ->type_name("WORD");
 }
 
+void add_names(CLI::App& command, const std::string& option, std::vector<std::string>& names,
+               const std::string& what, const char* type) {
+  command.add_option(option, names, what + "; may be given several times; default: none")
+      ->type_name(type)
+      ->allow_extra_args(false);
+}
+
+void add_new(CLI::App& app, int& result) {
+  auto& command = add_command(
+      app, "new",
+      "Begin a component: source that compiles, its description, and its project\n\n"
+      "An interface is looked for in the files and folders that are named, in the present folder, "
+      "and in Skein's own IDL.",
+      {{"skein new entity Lookout", "An entity with a new interface, and a mission to try it"},
+       {"skein new entity Lookout --operations 'double seen(in string what);'",
+        "The same, with that operation"},
+       {"skein new csp Spiral --implements survey::IPlanner --idl survey.idl",
+        "One more algorithm for an interface that is there"},
+       {"skein new activity Watch --needs survey::INavigator", "Code that only calls others"}});
+  auto& arguments = arguments_of(command, begin_component, result);
+  const std::vector<std::string> kinds{"entity", "csp", "activity"};
+  command.add_option("KIND", arguments.kind, "Of the component: " + one_of(kinds))
+      ->type_name(one_of(kinds))
+      ->check(known_word(kinds))
+      ->required();
+  command.add_option("NAME", arguments.name, "The component and its class, such as Lookout")
+      ->type_name("NAME")
+      ->required();
+  auto* there = command
+                    .add_option("--implements", arguments.implements,
+                                "The interface that it implements; default: a new one")
+                    ->type_name("INTERFACE-NAME");
+  command
+      .add_option("--operations", arguments.operations,
+                  "The operations of its new interface, in IDL; default: one to begin with")
+      ->type_name("IDL")
+      ->excludes(there);
+  add_names(command, "--needs", arguments.needs, "An interface of others that it calls",
+            "INTERFACE-NAME");
+  add_names(command, "--csps", arguments.csps, "An interface that CSPs of this entity implement",
+            "INTERFACE-NAME");
+  add_names(command, "--idl", arguments.idl, "A file with such an interface", kFile);
+  add_names(command, "--idl-folder", arguments.folders,
+            "A folder with such files, and with those that they include", kDirectory);
+  command
+      .add_option("--folder", arguments.folder,
+                  "The folder in which the component gets its own; default: the present one")
+      ->type_name(kDirectory);
+}
+
 CLI::Option* add_running(CLI::App& command, RunningArguments& arguments) {
   constexpr std::array kCodes{
       launch::ExitCode{"0", "done"},
@@ -210,6 +260,7 @@ void add_mission_commands(CLI::App& app, int& result) {
   add_restart(app, result);
   add_status(app, result);
   add_script(app, result);
+  add_new(app, result);
   add_attend(app, result);
 }
 
