@@ -106,7 +106,7 @@ class Workplace {
     const auto request = nlohmann::json::parse(text, nullptr, false);
     if (!request.is_object() || !request.contains("do")) return false;
     const auto& action = request["do"];
-    return action == "launch" || action == "script" || action == "watch" ||
+    return action == "launch" || action == "script" || action == "watch" || action == "new" ||
            request.contains("launcher");
   }
 
@@ -123,6 +123,7 @@ class Workplace {
     if (action == "launch") return launch();
     if (action == "script") return write_start_script();
     if (action == "watch") return watch();
+    if (action == "new") return begin_component(request);
     const auto domain = domain_now();
     const bool is_live = request.contains("launcher") || request.value("live", false);
     if (is_live && !domain) throw Unavailable("nobody watches the mission");
@@ -211,6 +212,24 @@ class Workplace {
     const ProgramEnd end = run_to_end(command);
     if (end.exit_code != 0) throw InvalidArgument("not written:\n" + end.errors);
     return "written to " + script.string();
+  }
+
+  std::string begin_component(const nlohmann::json& request) {
+    std::vector<std::string> command{program_, "new", designer::text_of(request, "kind"),
+                                     designer::text_of(request, "name"),
+                                     "--folder=" + options_.mission.parent_path().string()};
+    const auto add = [&](const char* option, const std::string& value) {
+      if (!value.empty()) command.push_back(option + value);
+    };
+    add("--implements=", designer::text_of(request, "implements"));
+    add("--operations=", designer::text_of(request, "operations"));
+    for (const std::string& name : designer::texts_of(request, "needs")) add("--needs=", name);
+    for (const std::string& name : designer::texts_of(request, "csps")) add("--csps=", name);
+    for (const fs::path& folder : composer_.idl_folders()) add("--idl-folder=", folder.string());
+    const ProgramEnd end = run_to_end(command);
+    if (end.exit_code != 0) throw InvalidArgument("nothing is written:\n" + end.errors);
+    (void)composer_.obey(R"({"do": "look"})");
+    return "written:\n" + end.output;
   }
 
   /// Begins anew only if the file has another plan by now.

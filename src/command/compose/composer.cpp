@@ -246,6 +246,11 @@ Placement::Places Composer::places() const {
   return placement_.places();
 }
 
+std::vector<std::filesystem::path> Composer::idl_folders() const {
+  std::lock_guard lock(mutex_);
+  return repository_.idl_folders();
+}
+
 void Composer::publish() {
   design_.changed = file_.is_changed();
   design_.checked = check_ && check_->failure.empty();

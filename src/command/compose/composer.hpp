@@ -70,6 +70,7 @@ class Composer {
   void demand_saved() const;
 
   Placement::Places places() const;
+  std::vector<std::filesystem::path> idl_folders() const;
 
  private:
   std::string carry_out(const std::string& action, const nlohmann::json& request);

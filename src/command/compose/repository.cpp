@@ -46,11 +46,15 @@ void Repository::look() {
   uses_.clear();
   troubles_.clear();
   dictionary_.clear();
+  idl_folders_.clear();
   for (const fs::path& folder : folders_) look_into(whole_path(folder));
   for (auto& [file, component] : components_) {
     const auto use = uses_.find(file);
-    if (use == uses_.end()) continue;
-    std::tie(component.plugin, component.program) = use->second;
+    if (use != uses_.end()) std::tie(component.plugin, component.program) = use->second;
+    std::error_code ignored;
+    if (component.plugin.empty() && component.program.empty() &&
+        fs::exists(fs::path(file).replace_extension(".cpp"), ignored))
+      component.plugin = file.stem();  // as of `skein new`
   }
 }
 
@@ -78,6 +82,8 @@ void Repository::look_into(const fs::path& folder) {
     if (at->path().extension() == ".xml" && at->is_regular_file(ignored) &&
         at->file_size(ignored) <= kLargest)
       found.push_back(at->path());
+    if (name.ends_with(".idl") && !name.ends_with(".dds.idl"))  // which Skein has generated
+      idl_folders_.insert(whole_path(at->path().parent_path()));
   }
   if (failure) {
     troubles_.push_back("not all of the folder " + printable(folder.string()) +

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,7 @@ namespace skein::command::compose {
 struct KnownComponent {
   std::shared_ptr<const profile::ComponentDescription> description;  ///< Null: `failure` says why.
   std::string failure;
-  std::string plugin;   ///< That a mission beside it names for it; may be empty.
+  std::string plugin;   ///< That a mission names for it, or of the source beside it; may be empty.
   std::string program;  ///< The same; a name without a slash, or a whole path.
 };
 
@@ -33,6 +34,10 @@ class Repository {
   }
   /// The first dictionary that was found; empty: none.
   const std::filesystem::path& dictionary() const noexcept { return dictionary_; }
+  /// The folders with IDL files.
+  std::vector<std::filesystem::path> idl_folders() const {
+    return {idl_folders_.begin(), idl_folders_.end()};
+  }
   /// Why not all is known, in words.
   const std::vector<std::string>& troubles() const noexcept { return troubles_; }
 
@@ -47,6 +52,7 @@ class Repository {
   std::map<std::filesystem::path, KnownComponent> components_;
   std::map<std::filesystem::path, std::pair<std::string, std::string>> uses_;  // plugin, program
   std::filesystem::path dictionary_;
+  std::set<std::filesystem::path> idl_folders_;
   std::vector<std::string> troubles_;
 };
 

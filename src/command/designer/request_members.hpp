@@ -1,10 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "skein/error.hpp"
 
@@ -29,6 +31,13 @@ inline std::string text_of(const nlohmann::json& request, const char* name) {
   const nlohmann::json& value = member(request, name);
   if (value.is_string()) return value.get<std::string>();
   throw InvalidArgument(std::string("the member '") + name + "' is no text");
+}
+
+inline std::vector<std::string> texts_of(const nlohmann::json& request, const char* name) {
+  const nlohmann::json& value = member(request, name);
+  if (value.is_array() && std::ranges::all_of(value, &nlohmann::json::is_string))
+    return value.get<std::vector<std::string>>();
+  throw InvalidArgument(std::string("the member '") + name + "' is no list of texts");
 }
 
 inline double number_of(const nlohmann::json& request, const char* name, double most) {

@@ -121,6 +121,20 @@ TEST_CASE("a mission that is not there yet begins empty, and is there once it is
   CHECK_FALSE(desk.state().changed);
 }
 
+TEST_CASE("a component whose source lies beside it has the plugin that skein new gives it") {
+  Desk desk;
+  desk.folder.write("watcher.cpp", "");
+  desk.folder.write("pilot.cpp", "");
+  desk.folder.write("boat.idl", "");
+  desk.folder.write("boat.dds.idl", "");
+  desk.open();
+  desk.add("watcher.xml");
+  desk.add("pilot.xml");
+  CHECK_THAT(desk.state().text, Contains("component=\"watcher.xml\" plugin=\"watcher\""));
+  CHECK_THAT(desk.state().text, Contains("component=\"pilot.xml\" plugin=\"boats\""));
+  CHECK(desk.composer->idl_folders() == std::vector{desk.folder.path()});
+}
+
 TEST_CASE("what an entity lacks is told until it is there") {
   Desk desk;
   desk.open();

@@ -1,6 +1,6 @@
 // Composing on the page of `skein designer` in Chromium: the reconnaissance mission from an empty canvas, by mouse and by keyboard.
 import assert from "node:assert/strict";
-import { readFileSync, writeFileSync } from "node:fs";
+import { existsSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import WebSocket from "ws";
@@ -208,7 +208,7 @@ test("what others write meanwhile is a bar, and is taken when it is wanted", asy
 
 test("text that is typed changes the drawing, and what is wrong in it is told with its place", async () => {
   await mouse.openTab("Text");
-  const area = page.locator("#composing textarea"), text = await area.inputValue();
+  const area = page.locator("#composing-Text textarea"), text = await area.inputValue();
   await area.fill(text.replace("</mission>", ""));
   await mouse.openTab("Problems");
   await page.locator("#composing .finding", { hasText: "<mission> is not closed" }).waitFor();
@@ -220,7 +220,7 @@ test("text that is typed changes the drawing, and what is wrong in it is told wi
 
 test("text that is typed over another's edit is refused, and stays until it is discarded", async () => {
   await mouse.openTab("Text");
-  const area = page.locator("#composing textarea"), text = await area.inputValue();
+  const area = page.locator("#composing-Text textarea"), text = await area.inputValue();
   await page.evaluate(() => Object.assign(window, { wait: window.setTimeout, setTimeout: () => 0 })); // so that nothing is sent yet
   await area.fill(`${text}<!-- mine`);
   const { version } = await told();
@@ -344,6 +344,38 @@ test("a start script is written beside the mission, and nothing else is overwrit
   await page.locator("#script").click();
   await page.locator("#composing .answer.bad", { hasText: "move it away" }).waitFor();
   assert.equal(readFileSync(script, "utf8"), "mine");
+});
+
+test("a component of one's own is begun from the page, and is among the others then", async () => {
+  await mouse.openTab("Add");
+  await page.getByText("Begin a component of your own").click();
+  const form = page.locator("#composing-Add details"), write = page.getByRole("button", { name: "Write its files" });
+  const control = (label) => form.locator(".field", { has: page.locator("label span").getByText(new RegExp(`^${label}( \\*)?$`)) }).locator("input, select, textarea");
+  await control("Name").fill("Range finder");
+  await write.click();
+  await page.locator("#composing .answer.bad", { hasText: "as in 'RangeFinder'" }).waitFor();
+  await control("Name").fill("RangeFinder");
+  await control("Operations").fill("double range_m(in Bearing to);");
+  await write.click();
+  await page.locator("#composing .answer.bad", { hasText: "there is no 'Bearing' here" }).waitFor();
+  assert.ok(!existsSync(join(folder, "range_finder")));
+  await control("Operations").fill("double range_m(in double bearing_deg);");
+  await write.click();
+  await page.locator("#composing .answer", { hasText: "cmake" }).waitFor();
+  assert.match(readFileSync(join(folder, "range_finder/range_finder.cpp"), "utf8"), /double range_m\(double/);
+  await page.getByRole("searchbox", { name: "Find a component" }).fill("range_finder");
+  await page.getByRole("button", { name: "Add RangeFinder as an entity" }).click();
+  await box("range_finder").waitFor();
+  assert.match((await told()).text, /component="range_finder\/range_finder.xml" plugin="range_finder"/);
+  await page.locator("#undo").click();
+  await box("range_finder").waitFor({ state: "detached" });
+  await control("Kind").selectOption("activity");
+  await control("Name").fill("Plotter");
+  await control("Calls").selectOption(["range_finder/IRangeFinder"]);
+  await write.click();
+  await page.locator("#composing .answer", { hasText: "plotter" }).waitFor();
+  assert.match(readFileSync(join(folder, "plotter/plotter.cpp"), "utf8"), /connect<range_finder::IRangeFinder>/);
+  await demandAccessible(page);
 });
 
 test("what this machine lacks keeps a mission from being launched, with the reason", async () => {

@@ -1,4 +1,5 @@
 // Composing a mission: components, forms, findings, and the text itself.
+import { Beginning } from "./beginning.js";
 import { childrenOf, componentOf, entityAt, fits, given, isCsp, isIn, summaryOf } from "./design.js";
 import { h, set, setText, sync } from "./element.js";
 import { Form } from "./form.js";
@@ -42,7 +43,8 @@ export class Composer {
     this.home = /** @type {HTMLSelectElement} */ (h("select"));
     this.homeLabel = h("label", { class: "level" }, "Add to ", this.home);
     this.list = h("ul", { class: "list" });
-    this.tabs.page("Add").append(this.search, this.homeLabel, this.list, h("p", { class: "hint" },
+    this.beginning = new Beginning((members) => this.run("new", members));
+    this.tabs.page("Add").append(this.search, this.homeLabel, this.beginning.root, this.list, h("p", { class: "hint" },
       "Drag one to the drawing or to a box, or press its button. Another folder: --components FOLDER."));
     this.text = /** @type {HTMLTextAreaElement} */ (h("textarea", { "aria-label": "The mission's XML", spellcheck: "false", oninput: () => this.typeText() }));
     /** The version of the mission's text from which the one in the field has come; 0: nobody has typed there. */
@@ -141,6 +143,7 @@ export class Composer {
 
   /** @param {DesignState} design */
   components(design) {
+    this.beginning.show(design);
     const groups = childrenOf(design, 0, "group");
     set(this.homeLabel, "hidden", !groups.length);
     sync(this.home, [0, ...groups], (each) => `${each}`, (each) => h("option", { value: each }), (option, each) =>
@@ -317,6 +320,7 @@ export class Composer {
   tell(text, kind) {
     set(this.answer, "class", kind);
     setText(this.answer, text);
+    set(this.answer, "tabindex", this.answer.scrollHeight > this.answer.clientHeight ? 0 : null); // so that keys scroll it
   }
 
   /** @param {KeyboardEvent} event */

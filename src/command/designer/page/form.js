@@ -166,7 +166,7 @@ export class Form {
 let lastHelp = 0;
 
 /** @param {string} name @param {HTMLElement} input @param {string} help @param {boolean} required */
-function row(name, input, help, required) {
+export function row(name, input, help, required = false) {
   const id = `help-${(lastHelp += 1)}`;
   if (help) set(input, "aria-describedby", id);
   if (required) set(input, "aria-required", "true");

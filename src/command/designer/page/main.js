@@ -40,7 +40,7 @@ function ask(what, members) {
     const request = ++lastRequest;
     requests.set(request, { resolve, reject });
     socket.send(JSON.stringify({ request, do: what, ...members }));
-    setTimeout(() => end(request, false, "skein designer does not answer"), ["launch", "script"].includes(what) ? checkWithin : answerWithin);
+    setTimeout(() => end(request, false, "skein designer does not answer"), ["launch", "script", "new"].includes(what) ? checkWithin : answerWithin);
   });
 }
 

@@ -1,7 +1,7 @@
 # The page of `skein designer`: each of its files becomes a part of the program, as one line.
 set(designer_page ${CMAKE_CURRENT_LIST_DIR})
 set(page_files)
-foreach(file index.html style.css icon.svg canvas.js compose.js design.js element.js form.js main.js panel.js replay.js schema.js state.js table.js tabs.js words.js)
+foreach(file index.html style.css icon.svg beginning.js canvas.js compose.js design.js element.js form.js main.js panel.js replay.js schema.js state.js table.js tabs.js words.js)
   file(READ ${designer_page}/${file} text)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${designer_page}/${file})
   cmake_path(GET file EXTENSION type)
