@@ -55,9 +55,16 @@ class Compilation:
         return self._built.interfaces
 
     @property
+    def outermost_names(self):
+        """Those of modules, and of all that stands in none, also in included files."""
+        return {item.scope[0] for item in self._built.all_items if item.scope}
+
+    @property
     def included_files(self):
-        """Whole paths of all files that an accepted file includes, and that declare something."""
-        return [os.path.abspath(path) for path in self._source.included.get(self._source.path, ()) if path in self._built.declaring]
+        """Whole paths of all files that an accepted file includes: those that declare something, and the others."""
+        included = self._source.included.get(self._source.path, ())
+        declaring = [os.path.abspath(path) for path in included if path in self._built.declaring]
+        return declaring, [os.path.abspath(path) for path in included if path not in self._built.declaring]
 
     def write(self, folder, name, depfile=None, language="c++"):
         """Writes what is made of an accepted file below `folder`: for `a/x.idl` `a/x.dds.idl`, `a/x.idl.hpp` and `a/x.idl.cpp` (`.h` and `.c` for C); for

@@ -4,7 +4,6 @@ import argparse
 import os
 import re
 import shlex
-import shutil
 import sys
 import tempfile
 
@@ -14,11 +13,12 @@ from compilation import Compilation
 from front_end import parser
 from report import printable, suggestion
 
-_REFUSED, _USAGE, _UNWRITTEN = 78, 64, 74  # as of Skein's other commands
+_REFUSED, _USAGE, _UNWRITTEN, _INTERRUPTED = 78, 64, 74, 130  # as of Skein's other commands
 _IDL = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 _NAVIGATION = os.path.join(_IDL, "navigation")  # of which Skein has a library
 _BEHIND = [os.path.join(_IDL, "skein"), os.path.join(_IDL, "corba")]  # looked at behind the user's folders
-_TARGETS = {"all", "clean", "edit_cache", "help", "install", "list_install_components", "package", "rebuild_cache", "test"}
+_TARGETS = {"all", "clean", "edit_cache", "help", "install", "list_install_components", "package", "preinstall", "rebuild_cache", "skein", "test"}
+_FILES = {"build", "mission"}  # that stand for something else in a project
 _LARGEST = 2 << 20  # bytes of a file in which an interface is looked for
 
 
@@ -55,7 +55,9 @@ def main(words):
         _Project(arguments).write()
         return 0
     except OSError as error:
-        return _told(f"{error.filename or arguments.folder}: {error.strerror}; name another folder by --folder", _UNWRITTEN)
+        return _told(f"{error.filename or arguments.folder or '.'}: {error.strerror}; name another folder by --folder", _UNWRITTEN)
+    except KeyboardInterrupt:
+        return _INTERRUPTED
     except Refused as refusal:
         return _told(str(refusal), refusal.code)
 
@@ -101,7 +103,7 @@ class _Interfaces:
         if len(found) > 1:
             raise Refused(f"'{wanted}' is several interfaces: {', '.join(sorted(found))}; write one of these")
         if not found:
-            raise Refused(f"no IDL file here has an interface '{name}'{suggestion(name, self._seen)}; name its file by --idl")
+            raise Refused(f"no IDL file here has an interface '{name}'{suggestion(name, self._seen - {name})}; name its file by --idl")
         return next(iter(found.values()))
 
     def _candidates(self):
@@ -109,6 +111,9 @@ class _Interfaces:
         for path in self._named:
             if not os.path.isfile(path):
                 raise Refused(f"there is no file {path}")
+        for folder in self._folders:
+            if not os.access(folder, os.R_OK | os.X_OK):
+                raise Refused(f"the folder {folder} cannot be read")
         beside = [path for folder in _folders_in(self._project) for path in _listed(folder)]  # other components' interfaces
         return [self._named, *map(_listed, (".", *self._folders)), beside, _listed(_NAVIGATION)]
 
@@ -135,16 +140,16 @@ def _folders_in(folder):
 
 
 def _listed(folder):
-    if not os.path.isdir(folder) and folder == _NAVIGATION:
-        return []  # of an installation without it
+    """The IDL files of a folder, without those that Skein has generated; none of one that cannot be read."""
     try:
-        return sorted(os.path.join(folder, name) for name in os.listdir(folder) if name.endswith(".idl") and not name.endswith(".dds.idl"))
-    except OSError as error:
-        raise Refused(f"the folder {folder} cannot be read: {error.strerror}") from error
+        return sorted(entry.path for entry in os.scandir(folder)
+                      if entry.name.endswith(".idl") and not entry.name.endswith(".dds.idl") and entry.name[0] != "." and entry.is_file())  # fmt: skip
+    except OSError:
+        return []
 
 
 def _text_of(path):
-    with open(path, encoding="utf-8", errors="replace") as stream:
+    with open(path, encoding="utf-8", errors="replace", newline="") as stream:
         return stream.read(_LARGEST)
 
 
@@ -161,19 +166,23 @@ class _Project:
     def __init__(self, arguments):
         self._arguments = arguments
         self._kind = arguments.kind
-        self._name = arguments.name
+        self._name = arguments.name if isinstance(arguments.name, str) else "--"  # of which argparse makes a list
         self._check_arguments()
-        self._stem = _snake(self._name)
+        stem = _snake(self._name)
+        is_taken = stem in _TARGETS | _FILES or stem.endswith("_generated")
+        self._stem = stem + "_component" if is_taken else stem
         self._project = arguments.folder or "."
         self._folder = os.path.normpath(os.path.join(self._project, self._stem))
         self._folders = [os.path.abspath(folder) for folder in arguments.folders]  # of the user's IDL, in the order of the search
         self._interfaces = _Interfaces(arguments.files, list(self._folders), self._project)
         self._declaring = []  # IDL files that declare the interfaces
         self._files = []  # the user's among them, with those that they include
+        self._read = set()  # these, and what they include without declaring anything
+        self._outermost = set()  # names in all of them
         self._sketch = ""
         self._implemented = self._implemented_interface()
-        self._needs = [self._found(name) for name in arguments.needs]
-        self._csps = [self._found(name) for name in arguments.csps]
+        self._needs = self._all_found(arguments.needs)
+        self._csps = self._all_found(arguments.csps)
 
     def _check_arguments(self):
         name = self._name
@@ -181,6 +190,8 @@ class _Project:
             proposal = "".join(part[:1].upper() + part[1:] for part in re.split(r"[^A-Za-z0-9]+", name)).lstrip("0123456789")
             raise Refused(f"'{name}' cannot be a component's class: write letters and digits, as in '{proposal or 'Watcher'}'", _USAGE)
         given = self._arguments
+        if any("\udc80" <= character <= "\udcff" for character in given.operations):
+            raise Refused("the operations are no UTF-8", _USAGE)
         if given.implements and given.operations:
             raise Refused("a component implements an interface that is there, or a new one: leave out --implements or --operations", _USAGE)
         if self._kind == "activity" and (given.implements or given.operations):
@@ -190,10 +201,6 @@ class _Project:
         if self._kind == "csp" and given.needs:
             raise Refused("a CSP needs no other services: its entity asks them, and tells it", _USAGE)
 
-    @property
-    def _target(self):
-        return self._stem + "_component" if self._stem in _TARGETS else self._stem
-
     def _implemented_interface(self):
         if self._kind == "activity":
             return None
@@ -201,31 +208,43 @@ class _Project:
             return self._found(self._arguments.implements)
         return self._sketched()
 
+    def _all_found(self, names_of_interfaces):
+        """Each once."""
+        return list({found.idl_name: found for found in map(self._found, names_of_interfaces)}.values())
+
     def _found(self, name):
         interface, path = self._interfaces.find(name)
         self._declaring.append(path)
         if not _is_within(path, _NAVIGATION):
-            for each in (path, *self._interfaces.compiled(path).included_files):
-                if not _is_within(each, _IDL) and each not in self._files:
-                    self._files.append(each)
-            if os.path.dirname(path) not in self._folders:
-                self._folders.append(os.path.dirname(path))
+            compilation = self._interfaces.compiled(path)
+            declaring, others = compilation.included_files
+            self._outermost |= compilation.outermost_names
+            self._read.update((path, *declaring, *others))
+            self._files += [each for each in (path, *declaring) if not _is_within(each, _IDL) and each not in self._files]
         return interface
+
+    def _include_folders(self):
+        """The user's that are needed, then the one around all other IDL files."""
+        users = [path for path in self._read if not _is_within(path, _IDL)]
+        named = [folder for folder in self._folders if any(_is_within(path, folder) for path in users)]
+        others = [os.path.dirname(path) for path in users if not any(_is_within(path, folder) for folder in named)]
+        return named + ([os.path.commonpath(others)] if others else [])
 
     def _headers(self):
         """As skein_add_idl() names them: from the first folder that holds the file."""
         found = {self._stem + ".idl.hpp"} if self._sketch else set()
         for path in self._declaring:
-            folder = next(each for each in [*self._folders, _NAVIGATION] if _is_within(path, each))
+            folder = next(each for each in [*self._include_folders(), _NAVIGATION] if _is_within(path, each))
             found.add(os.path.relpath(path, folder) + ".hpp")
         return found
 
     def _sketched(self):
         """A new interface, from its operations."""
         module = self._stem
-        if module in names.KEYWORDS | names.NAMESPACE | parser.KEYWORDS:
+        if module in names.KEYWORDS | names.NAMESPACE | parser.KEYWORDS | {"linux", "unix"}:
             module += "_service"
-        operations = [line.strip() for line in (self._arguments.operations or "double value();").strip().splitlines()]
+        text = self._arguments.operations.strip() or "double value();"
+        operations = [line.strip() for line in (text if text[-1] in ";}/" else text + ";").splitlines()]
         body = "\n".join(f"    {line}".rstrip() for line in operations)
         self._sketch = f"module {module} {{\n  interface I{self._name} {{\n{body}\n  }};\n}};\n"
         here = os.getcwd()
@@ -247,36 +266,50 @@ class _Project:
     def write(self):
         files = {
             self._stem + ".idl": self._sketch,
-            self._stem + ".cpp": _Source(self._kind, self._name, self._implemented, self._needs, self._csps, self._headers()).text(),
+            self._stem + ".cpp": _Source(self._kind, self._name, self._implemented, self._needs, self._csps, self._headers(), self._outermost).text(),
             self._stem + ".xml": self._description(),
             "CMakeLists.txt": self._build(),
-            "mission.xml": "" if self._kind == "csp" else self._mission(),
+            "mission.xml": "" if self._kind == "csp" or self._needs or self._csps else self._mission(),
         }
         files = {name: text for name, text in files.items() if text}
+        project = os.path.join(self._project, "CMakeLists.txt")
+        if os.path.lexists(project) and not os.path.isfile(project):
+            raise Refused(f"{project} is no file: name another folder by --folder")
         there = [name for name in files if os.path.lexists(os.path.join(self._folder, name))]
         if there:
             raise Refused(f"{os.path.join(self._folder, there[0])} is there already: remove it, or name another folder by --folder")
         made = not os.path.isdir(self._folder)
         os.makedirs(self._folder, exist_ok=True)
+        written = []
         try:
             for name, text in files.items():
-                with open(os.path.join(self._folder, name), "x", encoding="utf-8") as stream:
+                path = os.path.join(self._folder, name)
+                with open(path, "x", encoding="utf-8") as stream:
+                    written.append(path)
                     stream.write(text)
-            is_built = self._join_project()
-        except OSError:
+            is_built = self._join_project(written)
+        except BaseException:
+            for path in written:
+                os.unlink(path)
             if made:
-                shutil.rmtree(self._folder, ignore_errors=True)
+                os.rmdir(self._folder)
             raise
         self._tell(files, is_built)
 
-    def _join_project(self):
+    def _join_project(self, written):
         """Adds the component to the project around it, which it begins if there is none; false if that is the user's own."""
         path = os.path.join(self._project, "CMakeLists.txt")
-        text = _text_of(path) if os.path.lexists(path) else _PROJECT
+        if not os.path.lexists(path):
+            with open(path, "x", encoding="utf-8") as stream:
+                written.append(path)
+                stream.write(_PROJECT)
+        text = _text_of(path)
         if not text.startswith(_PROJECT):
             return False
-        with open(path, "w", encoding="utf-8") as stream:
-            stream.write(text.rstrip("\n") + f"\nadd_subdirectory({self._stem})\n")
+        line = f"add_subdirectory({self._stem})"
+        if line not in text.splitlines():
+            with open(path, "a", encoding="utf-8") as stream:
+                stream.write(("" if text.endswith("\n") else "\n") + line + "\n")
         return True
 
     def _description(self):
@@ -293,26 +326,29 @@ class _Project:
                 + part("subcomponents", csps) + "</component>\n")  # fmt: skip
 
     def _build(self):
-        lines = [f"add_library({self._target} MODULE {self._stem}.cpp)"]
+        lines = [f"add_library({self._stem} MODULE {self._stem}.cpp)"]
         files = ([self._stem + ".idl"] if self._sketch else []) + [self._reference(path) for path in self._files]
         if files:
-            folders = [self._reference(folder) for folder in self._folders]
-            includes = " INCLUDES " + " ".join(folders) if folders and self._files else ""
-            lines.append(f"skein_add_idl(TARGET {self._target} FILES {' '.join(files)}{includes})")
+            needed = self._include_folders()
+            folders = ([os.path.abspath(self._folder)] if self._sketch and needed else []) + needed
+            includes = " INCLUDES " + " ".join(map(self._reference, folders)) if folders else ""
+            lines.append(f"skein_add_idl(TARGET {self._stem} FILES {' '.join(files)}{includes})")
         navigation = "skein::navigation_idl " if any(_is_within(path, _NAVIGATION) for path in self._declaring) else ""
-        return "\n".join([*lines, f"target_link_libraries({self._target} PRIVATE {navigation}skein::skein)"]) + "\n"
+        return "\n".join([*lines, f"target_link_libraries({self._stem} PRIVATE {navigation}skein::skein)"]) + "\n"
 
     def _reference(self, path):
         """How the project names a file or folder: from its own folder, unless they share no more than the root."""
         path, folder = os.path.abspath(path), os.path.abspath(self._folder)
         common = os.path.commonpath([path, folder])
         reference = path if common == os.sep else os.path.relpath(path, folder)
+        if ";" in reference:
+            raise Refused(f"CMake divides the path {reference} at its ';': name other folders")
         reference = re.sub(r'([\\"$;])', r"\\\1", reference)
         return f'"{reference}"' if re.search(r"[^\w./+-]", reference) else reference
 
     def _mission(self):
         role = ' role="mission"' if self._kind == "activity" else ""
-        return (f'<!-- A mission to try it. -->\n<mission name="{self._stem}" domain="50" system="trial" plugin="{self._target}">\n'
+        return (f'<!-- A mission to try it. -->\n<mission name="{self._stem}" domain="50" system="trial" plugin="{self._stem}">\n'
                 f'  <peer name="{self._stem}" component="{self._stem}.xml"{role}/>\n</mission>\n')  # fmt: skip
 
     def _tell(self, files, is_built):
@@ -338,21 +374,25 @@ class _Project:
 class _Source:
     """The C++ of a component."""
 
-    def __init__(self, kind, name, implemented, needs, csps, headers):
+    def __init__(self, kind, name, implemented, needs, csps, headers, outermost):
         self._kind = kind
         self._component = name
         self._implemented = implemented
         self._needs = needs
         self._csps = csps
         self._headers = headers
-        roots = {each.scope[0] for each in (*needs, *csps, *([implemented] if implemented else []))}
-        self._name = name + ("Component" if name in roots else "")  # a namespace of that name would hide the class
         inherited = [implemented, *implemented.all_bases()] if implemented else []
-        taken = {nested.cpp_name for each in inherited for nested in each.nested}
-        self._whole_names = bool(taken & roots)
+        members = {operation.cpp_name for each in inherited for operation in each.operations}
+        modules = {implemented.scope[0]} if implemented else set()
+        # Such a name would hide the class, or be hidden by it.
+        self._name = name + ("Component" if name in outermost | modules | members | names.MACROS else "")
+        self._members_of_bases = members
+        self._hiding = {"Proxy", "Skeleton", "Deferred", self._name} | members
+        self._hiding |= {each.cpp_name for each in inherited} | {nested.scope[-1] for each in inherited for nested in each.nested}
 
     def _cpp(self, text):
-        return text if self._whole_names else re.sub(r"(?<![\w>:])::(?=\w)", "", text)
+        """Without the leading `::` of names that nothing in the class hides."""
+        return re.sub(r"(?<![\w>:])::(\w+)", lambda found: found[0] if found[1] in self._hiding else found[1], text)
 
     def text(self):
         includes = [f'#include "{header}"' for header in sorted({*self._headers, "skein/component_registry.hpp", *self._own_headers()})]
@@ -382,8 +422,8 @@ class _Source:
         return [*lines, "};"]
 
     def _members(self):
-        members = [("skein::Head&", "head_", "entity.head()")] if self._csps else []
-        taken = {"head_"}
+        taken = set(self._members_of_bases)
+        members = [("skein::Head&", names.unique("head_", frozenset(), taken), "entity.head()")] if self._csps else []
         for each in self._needs:
             member = names.unique(_snake(re.sub("^I(?=[A-Z])", "", each.scope[-1])) + "_", frozenset(), taken)
             members.append((f"{each.cpp}::Proxy", member, f"entity.connect<{self._cpp(each.cpp)}>()"))
@@ -418,7 +458,7 @@ class _Source:
                 f"    {task}.run = [&]({self._cpp(interface.cpp)}::Proxy& {proxy}, skein::Duration) {{",
                 f"      return {proxy}.{operation.cpp_name}({', '.join(p.cpp_name for p in operation.parameters)});",
                 "    };",
-                f"    return head_.perform({task});",
+                f"    return this->{self._members()[0][1]}.perform({task});",
                 "  }",
                 "",
             ]

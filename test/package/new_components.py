@@ -28,6 +28,12 @@ run(skein, "new", "csp", "Spiral", "--implements", "IPlanner")
 run(skein, "new", "entity", "Helm", "--needs", "ILookout", "--csps", "AE_navigator::IPlanner",
     "--operations", "struct Course { double degrees; };\nvoid steer(in Course to);\nCourse course();\n@stream Course courses();")  # fmt: skip
 run(skein, "new", "activity", "Watch", "--needs", "helm::IHelm")
+with open(os.path.join(folder, "chart.idl"), "w", encoding="utf-8") as chart:
+    chart.write('#include "lookout/lookout.idl"\ninterface IChart { double Test(); };\n')
+run(skein, "new", "entity", "Test", "--implements", "IChart")
+run(skein, "new", "entity", "Pilot", "--needs", "IChart", "--needs", "lookout::ILookout", "--operations", "void Pilot()")
+shutil.rmtree(os.path.join(folder, "lookout"))
+run(skein, "new", "entity", "Lookout")
 run("cmake", "-S", ".", "-B", "build", f"-DCMAKE_PREFIX_PATH={prefix}", *options)
 run("cmake", "--build", "build", "--parallel", "2")
 run(skein, "check", "lookout/mission.xml")
