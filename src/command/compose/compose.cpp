@@ -22,6 +22,7 @@
 #include "design.hpp"
 #include "flight.hpp"
 #include "mission/xml/notation.hpp"
+#include "mission/xml/text_file.hpp"
 #include "skein/error.hpp"
 #include "skein/executor.hpp"
 
@@ -34,6 +35,7 @@ using designer::LiveDomain;
 using designer::PageHub;
 
 constexpr double kLookSeconds = 1;
+constexpr int kLooksPerCheck = 5;
 constexpr std::size_t kLongestError = 1024;
 /// A whole mission as a JSON text.
 constexpr std::size_t kLargestRequest = std::size_t{3} << 20;
@@ -65,6 +67,11 @@ bool is_free(const fs::path& script) {
          read_whole_file("the script", script, std::size_t{1} << 20)
                  .find("# Written by `skein script`.") != std::string::npos;
 }
+
+struct Cleared {
+  ~Cleared() { flag = false; }
+  std::atomic<bool>& flag;
+};
 
 /// Composes, launches and watches a mission on one page.
 class Workplace {
@@ -156,12 +163,14 @@ class Workplace {
   }
 
   /// Has `skein check` look at the text once nobody changes it, for the findings that need this
-  /// machine.
+  /// machine; and again after errors, as a plugin may have been built meanwhile.
   void check() {
     const auto unchecked = composer_.unchecked();
     const std::uint64_t version = unchecked ? unchecked->version : 0;
-    if (std::exchange(seen_, version) != version || !unchecked || checking_.exchange(true)) return;
+    rested_ = std::exchange(seen_, version) == version ? rested_ + 1 : 0;
+    if (!unchecked || rested_ % kLooksPerCheck != 1 || checking_.exchange(true)) return;
     checks_.post([this, text = *unchecked] {
+      const Cleared done{checking_};
       Composer::Check check;
       try {
         auto command = words("check");
@@ -171,17 +180,13 @@ class Workplace {
         check.failure = std::string("this machine could not be checked: ") + error.what();
       }
       composer_.tell_check(text.version, std::move(check));
-      checking_ = false;
     });
   }
 
   /// Starts nothing that the check refuses.
   std::string launch() {
     if (launching_.exchange(true)) throw Unavailable("it is being launched");
-    struct Done {
-      ~Done() { launching = false; }
-      std::atomic<bool>& launching;
-    } const done{launching_};
+    const Cleared done{launching_};
     composer_.demand_saved();
     if (const auto flight = flight_now(); flight && flight->end().empty())
       throw Unavailable("it flies already: stop it first");
@@ -215,8 +220,7 @@ class Workplace {
   }
 
   std::string begin_component(const nlohmann::json& request) {
-    std::vector<std::string> command{program_, "new", designer::text_of(request, "kind"),
-                                     designer::text_of(request, "name"),
+    std::vector<std::string> command{program_, "new",
                                      "--folder=" + options_.mission.parent_path().string()};
     const auto add = [&](const char* option, const std::string& value) {
       if (!value.empty()) command.push_back(option + value);
@@ -226,6 +230,8 @@ class Workplace {
     for (const std::string& name : designer::texts_of(request, "needs")) add("--needs=", name);
     for (const std::string& name : designer::texts_of(request, "csps")) add("--csps=", name);
     for (const fs::path& folder : composer_.idl_folders()) add("--idl-folder=", folder.string());
+    command.insert(command.end(),
+                   {"--", designer::text_of(request, "kind"), designer::text_of(request, "name")});
     const ProgramEnd end = run_to_end(command);
     if (end.exit_code != 0) throw InvalidArgument("nothing is written:\n" + end.errors);
     (void)composer_.obey(R"({"do": "look"})");
@@ -237,15 +243,20 @@ class Workplace {
     std::vector<profile::Finding> ignored;
     const auto mission =
         profile::read_mission_profile(options_.mission, ignored, options_.variables);
-    auto plan = designer::plan_of(mission);
-    auto domain = domain_now();
-    if (!domain || !domain->is_of(arguments_.watched_domain(), plan)) {
-      domain = std::make_shared<LiveDomain>(arguments_, std::move(plan),
+    std::pair watched(profile::read_text_file(options_.mission), designer::plan_of(mission));
+    std::shared_ptr<LiveDomain> domain;
+    {
+      std::lock_guard lock(mutex_);
+      if (watched == watched_) domain = domain_;
+    }
+    if (!domain) {
+      domain = std::make_shared<LiveDomain>(arguments_, watched.second,
                                             [this] { return ending_.load(); });
       hub_->publish(PageHub::Kind::Domain, nullptr);  // what pages show is another domain
     }
     domain->place(composer_.places());
     std::lock_guard lock(mutex_);
+    watched_ = std::move(watched);
     domain_.swap(domain);  // the old one leaves when the lock is free again
     return "watched";
   }
@@ -271,10 +282,12 @@ class Workplace {
   DesignerArguments arguments_;
   const Composer::Options options_;
   std::uint64_t seen_ = 0;  // the version of an unchecked text at the last look
+  int rested_ = 0;          // for so many looks
   std::atomic<bool> ending_{false};
   std::atomic<bool> checking_{false};
   std::atomic<bool> launching_{false};
-  mutable std::mutex mutex_;  // of the two pointers
+  mutable std::mutex mutex_;                        // of the three below
+  std::pair<std::string, designer::Plan> watched_;  // the file's text, and what it plans
   std::shared_ptr<LiveDomain> domain_;
   std::shared_ptr<compose::Flight> flight_;
   const std::shared_ptr<PageHub> hub_;

@@ -44,6 +44,12 @@ const char* in_words(MissionFile::Disk disk) {
   return disk == MissionFile::Disk::Gone ? "gone" : "changed";
 }
 
+bool is_accepted(const Composer::Check& check) {
+  return check.failure.empty() && std::ranges::none_of(check.findings, [](const auto& finding) {
+           return finding.severity == profile::Severity::Error;
+         });
+}
+
 designer::Place place_in(const nlohmann::json& request) {
   return {number_of(request, "x", designer::kFarthest),
           number_of(request, "y", designer::kFarthest)};
@@ -96,7 +102,8 @@ std::string Composer::carry_out(const std::string& action, const nlohmann::json&
   }
   if (action == "save") {
     file_.save(request.value("over", false));
-    return "saved as " + options_.mission.string();
+    return "saved as " + options_.mission.string() +
+           (design_.flight == "flies" ? ", for the next launch" : "");
   }
   if (action == "compare") {
     const bool ends = designer::member(request, "with").is_null();
@@ -131,7 +138,8 @@ nlohmann::json Composer::in_present_numbers(const nlohmann::json& request) const
   const std::uint64_t version = count_of(request, "version");
   if (version == design_.version) return request;
   const auto element = trail_.find(count_of(request, "element"), version, *source_);
-  if (!element) throw Unavailable("the element is gone: the mission was changed meanwhile");
+  if (!element)
+    throw Unavailable("the element is gone, or another one: the mission was changed meanwhile");
   nlohmann::json present = request;
   present["element"] = *element;
   return present;
@@ -148,7 +156,7 @@ std::string Composer::edit(const nlohmann::json& request) {
     throw InvalidArgument("the mission would be larger than 8 MiB, which nobody reads");
   const profile::XmlSource demanded(after, options_.mission.string());
   file_.history().edit(made.label, made.key, made.splice);
-  refresh();
+  refresh(ElementTrail::Kind::Edit);
   if (at && source_) placement_.place(entity_in(made.splice, design_, *source_), *at);
   return "done: " + made.label;
 }
@@ -165,10 +173,11 @@ std::string Composer::replace_text(const nlohmann::json& request) {
 }
 
 /// Derives the design from the text. While the text is no XML, boxes stay.
-void Composer::refresh() {
+void Composer::refresh(ElementTrail::Kind change) {
   if (design_.text != file_.text()) {
     check_.reset();
-    trail_.add(design_.version, source_ ? &*source_ : nullptr, file_.history().last_change());
+    trail_.add(design_.version, source_ ? &*source_ : nullptr, file_.history().last_change(),
+               change);
   }
   const bool is_checked = check_ && check_->failure.empty();
   DesignState design = design_of(file_.text(), options_.mission, options_.variables, repository_,
@@ -206,7 +215,7 @@ void Composer::keep() {
 
 std::optional<Composer::Unchecked> Composer::unchecked() const {
   std::lock_guard lock(mutex_);
-  if (check_) return std::nullopt;
+  if (check_ && is_accepted(*check_)) return std::nullopt;
   if (!file_.is_changed() && file_.disk() == MissionFile::Disk::Same)
     return Unchecked{design_.version, options_.mission};
   const auto draft = kept_.file_with(file_.text());
@@ -215,7 +224,7 @@ std::optional<Composer::Unchecked> Composer::unchecked() const {
 
 void Composer::tell_check(std::uint64_t version, Check check) {
   std::lock_guard lock(mutex_);
-  if (version != design_.version) return;
+  if (version != design_.version || (check_ && check == *check_)) return;
   check_ = std::move(check);
   refresh();
   placement_.arrange(design_);

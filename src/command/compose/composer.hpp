@@ -47,7 +47,7 @@ class Composer {
   /// Unavailable if others were faster.
   std::string obey(std::string_view request);
 
-  /// A text of which `skein check` was not asked yet, and a file with that text.
+  /// A text that `skein check` has not accepted yet, and a file with that text.
   struct Unchecked {
     std::uint64_t version;
     std::filesystem::path file;
@@ -58,6 +58,7 @@ class Composer {
   struct Check {
     std::vector<profile::Finding> findings;
     std::string failure{};
+    bool operator==(const Check&) const = default;
   };
   /// Nothing happens if the text has another version by now.
   void tell_check(std::uint64_t version, Check check);
@@ -77,7 +78,7 @@ class Composer {
   nlohmann::json in_present_numbers(const nlohmann::json& request) const;
   std::string edit(const nlohmann::json& request);
   std::string replace_text(const nlohmann::json& request);
-  void refresh();
+  void refresh(ElementTrail::Kind change = ElementTrail::Kind::Other);
   void keep();
   void publish();
 

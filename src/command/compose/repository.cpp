@@ -27,6 +27,20 @@ std::string first_of(const std::string& one, const std::string& other) {
   return one.empty() ? other : one;
 }
 
+/// The plugin that the project beside a description builds for it, as `skein new` writes one; else
+/// empty.
+std::string built_for(const fs::path& description) try {
+  const std::string text = profile::read_text_file(description.parent_path() / "CMakeLists.txt");
+  const std::string call = "add_library(";
+  const std::size_t end = text.find(" MODULE " + description.stem().string() + ".cpp)");
+  const std::size_t begin = end == std::string::npos ? end : text.rfind(call, end);
+  if (begin == std::string::npos) return "";
+  const std::string target = text.substr(begin + call.size(), end - begin - call.size());
+  return target.find_first_of(" \n") == std::string::npos ? target : "";
+} catch (const Error&) {
+  return "";
+}
+
 }  // namespace
 
 fs::path whole_path(const fs::path& path) {
@@ -51,10 +65,7 @@ void Repository::look() {
   for (auto& [file, component] : components_) {
     const auto use = uses_.find(file);
     if (use != uses_.end()) std::tie(component.plugin, component.program) = use->second;
-    std::error_code ignored;
-    if (component.plugin.empty() && component.program.empty() &&
-        fs::exists(fs::path(file).replace_extension(".cpp"), ignored))
-      component.plugin = file.stem();  // as of `skein new`
+    if (component.plugin.empty() && component.program.empty()) component.plugin = built_for(file);
   }
 }
 

@@ -29,9 +29,6 @@ class LiveDomain {
   void rest() { watch_.reset(); }
   bool rests() const { return !watch_; }
 
-  bool is_of(std::uint32_t domain, const Plan& plan) const {
-    return domain == domain_ && plan == plan_;
-  }
   Actions actions();
   /// Places for boxes that will appear.
   void place(std::map<std::string, Place> places);

@@ -31,6 +31,8 @@ struct Finding {
   std::string problem;   ///< What is wrong, or was not checked: one clause without a full stop.
   std::string remedy;    ///< What to write instead; may be empty.
   bool passing = false;  ///< This machine lacks something that may come: no file is wrong.
+
+  bool operator==(const Finding&) const = default;
 };
 
 /// `error`, `warning`, `note`.

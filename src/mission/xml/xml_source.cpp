@@ -142,6 +142,16 @@ Splice difference(std::string_view before, std::string_view after) {
           std::string(after.substr(same, after.size() - same - tail))};
 }
 
+/// As a field of a page has it: with line feeds alone.
+static std::string as_field(std::string_view text) {
+  std::string field;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    field += text[i] == '\r' ? '\n' : text[i];
+    if (text.substr(i).starts_with("\r\n")) ++i;
+  }
+  return field;
+}
+
 Splice typed_difference(std::string_view before, std::string_view typed) {
   const bool plain = before.find('\r') == std::string_view::npos;
   if (plain || typed.find('\r') != std::string_view::npos) return difference(before, typed);
@@ -163,7 +173,8 @@ Splice typed_difference(std::string_view before, std::string_view typed) {
       splice.inserted += c;
     }
   }
-  return splice;
+  // Next to a lone carriage return, another line end may become one with it.
+  return as_field(spliced(before, splice)) == typed ? splice : difference(before, typed);
 }
 
 XmlSource::XmlSource(std::string text, const std::string& file) : text_(std::move(text)) {

@@ -159,6 +159,8 @@ TEST_CASE("text from a page's field, which has line feeds alone, leaves all othe
   CHECK(typed("a\r\nb", "b") == "b");
   CHECK(typed("a\nb", "a\n\nb") == "a\n\nb");
   CHECK(typed("a\r\nb", "a\r\nc") == "a\r\nc");
+  CHECK(typed("a\rb\nc", "a\n\nc") == "a\n\nc");
+  CHECK(typed("a\nb\rc", "a Q\n\nb\nc") == "a Q\n\nb\nc");
 }
 
 TEST_CASE("whatever is changed, the document is what it should be, and all else stays as it was") {

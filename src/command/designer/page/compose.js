@@ -13,6 +13,8 @@ import { counted, short } from "./words.js";
 const typingPause = 250;
 const dragType = "text/x-skein-component";
 
+/** @param {string} text @returns {string} */
+const asField = (text) => text.replace(/\r\n?/g, "\n");
 const $ = (/** @type {string} */ id) => /** @type {HTMLElement} */ (document.getElementById(id));
 
 export class Composer {
@@ -118,7 +120,7 @@ export class Composer {
 
   /** Input stays until the mission has it. @param {DesignState} design */
   showText(design) {
-    const now = design.text.replace(/\r\n?/g, "\n"); // as a field has it
+    const now = asField(design.text);
     set(this.takeText, "hidden", !this.textVersion);
     if (!this.textVersion && this.text.value !== now) this.text.value = now;
   }
@@ -135,9 +137,10 @@ export class Composer {
     this.draw();
   }
 
-  /** @param {string} sent */
+  /** Later input is meant for the version that this text has made, if no other one came first. @param {string} sent */
   textIsTaken(sent) {
-    this.textVersion = this.text.value === sent ? 0 : this.design?.version ?? 0;
+    if (this.text.value === sent) this.textVersion = 0;
+    else if (this.design && asField(this.design.text) === sent) this.textVersion = this.design.version;
     this.draw();
   }
 
@@ -246,6 +249,7 @@ export class Composer {
 
   /** @param {(watches: boolean) => void} watch */
   async launch(watch) {
+    if (!(await this.flush())) return;
     if (this.design?.changed && !(await this.run("save", {}))) return;
     if (await this.run("launch", {})) watch(true);
   }
@@ -290,20 +294,21 @@ export class Composer {
     this.typed = { what, members, timer: setTimeout(() => this.flush(), typingPause) };
   }
 
-  /** Sends the input. */
+  /** Sends the input. False if it is refused. @returns {Promise<boolean>} */
   flush() {
     const typed = this.typed;
-    if (!typed) return;
+    if (!typed) return Promise.resolve(true);
     clearTimeout(typed.timer);
     this.typed = null;
-    void this.run(typed.what, typed.members);
+    return this.run(typed.what, typed.members);
   }
 
   /** @param {string} what @param {Record<string, any>} members @param {boolean} [silent] @returns {Promise<boolean>} */
   run(what, members, silent) {
-    this.flush();
+    const isTaken = this.flush();
     this.queue = this.queue.then(async () => {
       try {
+        if (what === "save" && !(await isTaken)) return false; // the answer tells why
         const text = await this.ask(what, what === "text" ? { ...members, version: this.textVersion } : members);
         if (what === "text") this.textIsTaken(members.text);
         if (!silent) this.tell(text, "answer");

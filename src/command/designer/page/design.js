@@ -46,6 +46,7 @@ export function isIn(design, element, around) {
 
 /** The value that an element has from those around it. @param {DesignState} design @param {number} element @param {string} name */
 export function inherited(design, element, name) {
+  if (name === "name") return undefined;
   for (let at = design.elements[element]?.parent ?? -1; at >= 0; at = design.elements[at].parent) {
     const value = given(design, at, name);
     if (value !== undefined) return value;

@@ -206,7 +206,8 @@ const canvas = new Canvas($("canvas"), view, {
 toggle("values", () => (view.values = !view.values));
 toggle("shared", () => (view.shared = !view.shared));
 $("watch").onclick = async () => {
-  if (watches || await composer?.run("watch", {})) watch(!watches);
+  if (watches) watch(false);
+  else if (await composer?.run("watch", {})) watch(true);
 };
 toggle("as-table", () => {
   asTable = !asTable;
