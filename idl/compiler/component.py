@@ -82,7 +82,7 @@ class _Interfaces:
         self._named = files
         self._folders = folders
         self._project = project
-        self._compiled = {}  # path: its interfaces; None if the file was refused
+        self._compiled = {}  # by path
         self._seen = set()  # names of interfaces in files that were looked at
 
     def find(self, wanted):
@@ -119,20 +119,19 @@ class _Interfaces:
 
     def _interfaces_of(self, path, name):
         """Of a file that may declare that one; others are not compiled."""
-        if path not in self._compiled:
-            text = _text_of(path)
-            declared = re.findall(r"\binterface\s+_?(\w+)", text)
-            self._seen |= set(declared)
-            if name not in declared:
-                return []
-            compilation = self.compiled(path)
-            self._compiled[path] = compilation.interfaces if compilation.accepted else []
-            if not compilation.accepted:
-                raise Refused("")  # the compiler has told why
-        return self._compiled[path]
+        declared = set(re.findall(r"\binterface\s+_?(\w+)", _text_of(path)))
+        self._seen |= declared
+        if name not in declared:
+            return []
+        compilation = self.compiled(path)
+        if not compilation.accepted:
+            raise Refused("")  # the compiler has told why
+        return compilation.interfaces
 
     def compiled(self, path):
-        return Compilation(path, [*self._folders, os.path.dirname(os.path.abspath(path)), *_BEHIND], [])
+        if path not in self._compiled:
+            self._compiled[path] = Compilation(path, [*self._folders, os.path.dirname(os.path.abspath(path)), *_BEHIND], [])
+        return self._compiled[path]
 
 
 def _folders_in(folder):

@@ -157,7 +157,8 @@ std::string Composer::edit(const nlohmann::json& request) {
   const profile::XmlSource demanded(after, options_.mission.string());
   file_.history().edit(made.label, made.key, made.splice);
   refresh(ElementTrail::Kind::Edit);
-  if (at && source_) placement_.place(entity_in(made.splice, design_, *source_), *at);
+  const std::string added = at && source_ ? entity_in(made.splice, design_, *source_) : "";
+  if (!added.empty()) placement_.place(added, *at);
   return "done: " + made.label;
 }
 

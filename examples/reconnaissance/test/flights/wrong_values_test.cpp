@@ -116,6 +116,6 @@ TEST_CASE("a mission that waits for what never comes says for what") {
   CAPTURE(setting);
   CommandRun run({"launch", "--no-log", profile("reconnaissance"), "--set", setting, "--set",
                   "ground_station.Patience=10 s"});
-  CHECK(run.wait() == 11);
+  CHECK(run.wait(std::chrono::minutes(4)) == 11);  // 600 s of the mission
   CHECK_THAT(run.output(), Contains(reason));
 }
