@@ -228,7 +228,6 @@ int main(int argc, char** argv) {
   as_peer->add_option("--peer", peer.peer);
   as_peer->add_option("--peers", peer.peers);
   as_peer->add_flag("--shared-memory", peer.shared_memory);
-  as_peer->add_flag("--on-arrival", peer.on_arrival);
   as_peer->add_option("--spin-us", peer.spin_us);
   as_peer->add_flag("--survives", peer.survives);
   CLI11_PARSE(app, argc, argv);

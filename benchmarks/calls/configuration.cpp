@@ -59,10 +59,7 @@ Configuration Configurations::skein_same_host(SharedMemory how, std::size_t thre
   Configuration made = skein("fastdds", "fastdds", threads);
   made.name = "skein shared memory";
   for (Words* command : {&made.server, &made.client}) command->push_back("--shared-memory");
-  if (how == SharedMemory::OwnThread) return made;
-  made.name += ", on arrival";
-  made.server.push_back("--on-arrival");
-  if (how == SharedMemory::OnArrival) return made;
+  if (how == SharedMemory::Sleeping) return made;
   made.name += ", spinning";
   made.needs_a_core_each = true;
   for (Words* command : {&made.server, &made.client}) {
@@ -72,7 +69,7 @@ Configuration Configurations::skein_same_host(SharedMemory how, std::size_t thre
 }
 
 Configuration Configurations::skein_lending() {
-  Configuration made = skein_same_host(SharedMemory::OwnThread);
+  Configuration made = skein_same_host(SharedMemory::Sleeping);
   *std::ranges::find(made.server, "server") = "viewer";
   *std::ranges::find(made.client, "client") = "lender";
   return made;

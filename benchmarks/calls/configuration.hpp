@@ -40,9 +40,8 @@ class Configurations {
                       const std::optional<Place>& client_place = {});
   /// Both on Fast DDS, with calls through shared memory.
   enum class SharedMemory {
-    OwnThread,
-    OnArrival,  ///< The service runs on the thread that takes the request.
-    Spinning,   ///< That, and whoever waits spins.
+    Sleeping,
+    Spinning,  ///< Whoever waits spins before sleeping.
   };
   Configuration skein_same_host(SharedMemory how, std::size_t threads = 1);
   /// Of roles `viewer` and `lender` (calls/skein_peer.hpp).

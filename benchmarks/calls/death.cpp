@@ -92,7 +92,7 @@ std::vector<Comparison> compare_deaths_on_one_host(Configurations& configuration
     victims.push_back({configurations.skein(server, client, 2)});
   }
   using Memory = Configurations::SharedMemory;
-  const auto same_host = [&] { return configurations.skein_same_host(Memory::OwnThread, 2); };
+  const auto same_host = [&] { return configurations.skein_same_host(Memory::Sleeping, 2); };
   victims.push_back({same_host()});
   std::uint64_t resident = 0;
   const Absence unknown = attempt("the provider's size", [&] {

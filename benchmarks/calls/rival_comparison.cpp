@@ -101,8 +101,7 @@ std::vector<Comparison> compare_rivals(Configurations& configurations, const Riv
   using Memory = Configurations::SharedMemory;
   const std::vector<Configuration> subjects{configurations.skein("fastdds", "fastdds"),
                                             configurations.skein("cyclonedds", "cyclonedds"),
-                                            configurations.skein_same_host(Memory::OwnThread),
-                                            configurations.skein_same_host(Memory::OnArrival)};
+                                            configurations.skein_same_host(Memory::Sleeping)};
   const std::vector<Configuration> rivals{configurations.rival("omniorb", "unix"),
                                           configurations.rival("omniorb", "tcp"),
                                           configurations.rival("grpc", "unix"),
@@ -164,7 +163,7 @@ std::vector<Comparison> compare_idle_clients(Configurations& configurations,
     enter([&] { return configurations.skein(vendor, vendor); }, {32});
   }
   using Memory = Configurations::SharedMemory;
-  enter([&] { return configurations.skein_same_host(Memory::OnArrival); }, {32, plan.many});
+  enter([&] { return configurations.skein_same_host(Memory::Sleeping); }, {32, plan.many});
   contest.run(plan.calls.rounds);
   std::vector<Comparison> comparisons = contest.compare(pairs);
   Comparison& memory = comparisons.emplace_back(

@@ -14,8 +14,7 @@ std::vector<Comparison> compare_same_host(Configurations& configurations, const 
   }
   Contest contest("same host", std::move(trials));
   using Memory = Configurations::SharedMemory;
-  const std::vector<Configuration> subjects{configurations.skein_same_host(Memory::OwnThread),
-                                            configurations.skein_same_host(Memory::OnArrival),
+  const std::vector<Configuration> subjects{configurations.skein_same_host(Memory::Sleeping),
                                             configurations.skein_same_host(Memory::Spinning)};
   const std::vector<Configuration> rivals{
       configurations.skein("fastdds", "fastdds"), configurations.rival("omniorb", "unix"),

@@ -40,7 +40,6 @@ void serve(const SkeinPeer& peer) {
   Entity entity(entity_options(peer));
   ServiceOptions options;
   options.threads = peer.threads;
-  if (peer.on_arrival) options.thread = CallThread::Caller;
   entity.provide<Echo>(std::make_shared<EchoBody>(), options);
   run_server();
 }

@@ -21,7 +21,6 @@ struct SkeinPeer {
   std::string interface;       ///< Empty: loopback.
   std::string peer;            ///< Address of the other host, with `interface`.
   bool shared_memory = false;  ///< See EntityOptions::shared_memory_calls.
-  bool on_arrival = false;     ///< A server whose service has CallThread::Caller.
   std::uint32_t spin_us = 0;   ///< See EntityOptions::spin.
   bool survives = false;       ///< A server or client that goes through faults: survive().
   std::size_t peers =

@@ -65,9 +65,7 @@ struct ServiceOptions {
   /// that misses one of these two by a letter is logged.
   std::vector<ServiceAttribute> attributes{};
   /// Where blocking calls from the same process run; all others run on the service's own threads.
-  /// With CallThread::Caller, calls run one at a time, `threads` is 1, and those through shared
-  /// memory, once a hundred in a row took a millisecond at most, run on the thread that takes the
-  /// service's requests; streams never do.
+  /// With CallThread::Caller, calls run one at a time, and `threads` is 1.
   CallThread thread = CallThread::Own;
   /// Number of own threads that run this service's calls; 1 or more.
   std::size_t threads = 1;

@@ -61,6 +61,7 @@ void PendingCall::finish(std::exception_ptr error) {
   changed_.notify_all();  // unlocked: on one processor it may run at once, and needs the lock
   if (attended) answers->leave();
   if (taken_here) answers->wake();
+  if (answers) answers->end();
   if (action) action();
 }
 
@@ -75,12 +76,13 @@ bool PendingCall::finished() const {
   return finished_;
 }
 
-void PendingCall::set_answers(std::shared_ptr<Answers> answers) {
+void PendingCall::set_answers(const std::shared_ptr<Answers>& answers) {
   bool attended = false;
   {
     std::lock_guard lock(mutex_);
     if (finished_) return;
     answers_ = answers;
+    answers->begin(blocking_);
     attended = attended_;
   }
   if (attended) answers->attend();

@@ -189,7 +189,8 @@ struct Entity::State {
         process(options.process ? options.process : std::make_shared<Process>()),
         participant(make_participant()),
         same_host(options.shared_memory_calls.value_or(!options.vendor->is_inside_process())
-                      ? same_host::make_call_ports({participant->guid(), options.spin})
+                      ? std::make_unique<same_host::CallPorts>(
+                            same_host::PortOptions{participant->guid(), options.spin})
                       : nullptr),
         journal(std::make_shared<rpc::CallJournal>(*participant, process->clock(), control,
                                                    options.system + "/" + options.name)),
@@ -487,11 +488,9 @@ Guid Entity::add(std::shared_ptr<Servant> servant, const ServiceOptions& options
       provided->same_host_server = std::make_unique<rpc::DdsServer>(
           state_->same_host->providers, state_->control, state_->process->clock(),
           provided->service,
-          rpc::DdsServer::Options{
-              .foreign_clients = false, .may_run = true, .on_load = state_->loads.notifier()});
+          rpc::DdsServer::Options{.foreign_clients = false, .on_load = state_->loads.notifier()});
       // While it takes requests it polls for as long as the entity says.
-      if (options.thread == CallThread::Own && options.threads == 1 &&
-          options.scheduling.spin <= state_->options.spin) {
+      if (options.threads == 1 && options.scheduling.spin <= state_->options.spin) {
         provided->executor->work_while_idle(std::make_shared<rpc::Reception>(
             *provided->service, provided->same_host_server->delivery()));
       }

@@ -3,7 +3,6 @@
 #include <atomic>
 #include <utility>
 
-#include "core/log.hpp"
 #include "dds/port/sample_format.hpp"
 #include "skein/error.hpp"
 
@@ -198,13 +197,6 @@ class LinkWriter final : public dds::Writer {
 };
 
 }  // namespace
-
-std::unique_ptr<CallPorts> make_call_ports(const PortOptions& options) {
-  if (can_wait_for_several()) return std::make_unique<CallPorts>(options);
-  log(LogLevel::Warning, "same host",
-      "calls on this host go over DDS: the kernel has no futex_waitv, which Linux 5.16 brought");
-  return nullptr;
-}
 
 Guid EndpointIdentities::next() {
   const std::uint32_t number = ++last_;

@@ -111,7 +111,4 @@ struct CallPorts {
   ClientPort clients;
 };
 
-/// Nothing, and a line in the log, where the kernel cannot do it.
-std::unique_ptr<CallPorts> make_call_ports(const PortOptions& options);
-
 }  // namespace skein::same_host

@@ -6,14 +6,11 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cerrno>
 #include <chrono>
 #include <climits>
-#include <cstddef>
 #include <cstdint>
 #include <ctime>
 #include <optional>
-#include <span>
 #include <utility>
 
 #include "skein/clock.hpp"
@@ -38,6 +35,12 @@ inline void futex_wait(const Word& word, std::uint32_t value, Instant deadline) 
   const auto until = to_timespec(deadline);
   syscall(SYS_futex, &word, FUTEX_WAIT_BITSET, value, until ? &*until : nullptr, nullptr,
           FUTEX_BITSET_MATCH_ANY);
+}
+
+/// The same for at most so long, without a look at the clock.
+inline void futex_wait_for(const Word& word, std::uint32_t value, std::chrono::milliseconds time) {
+  const timespec longest{time.count() / 1000, time.count() % 1000 * 1'000'000};
+  syscall(SYS_futex, &word, FUTEX_WAIT, value, &longest, nullptr, 0);
 }
 
 inline void futex_wake(const Word& word) {
@@ -72,32 +75,5 @@ class Wakes {
  private:
   Word* first_ = nullptr;
 };
-
-/// One of several words to sleep on.
-inline futex_waitv while_it_is(const Word& word, std::uint32_t value) {
-  futex_waitv waiter{};
-  waiter.val = value;
-  waiter.uaddr = reinterpret_cast<std::uintptr_t>(&word);
-  waiter.flags = FUTEX_32;
-  return waiter;
-}
-
-/// As many words as the kernel lets a thread sleep on at once.
-inline constexpr std::size_t kMostWords = FUTEX_WAITV_MAX;
-
-/// Sleeps while all words have their values, until somebody wakes one or the deadline has come;
-/// kMostWords at most. It may return early.
-inline void futex_wait(std::span<futex_waitv> words, Instant deadline = Instant::max()) {
-  const auto until = to_timespec(deadline);
-  syscall(SYS_futex_waitv, words.data(), words.size(), 0, until ? &*until : nullptr,
-          CLOCK_MONOTONIC);
-}
-
-/// Whether the kernel has that: Linux 5.16 and later do.
-inline bool can_wait_for_several() {
-  Word word{1};
-  futex_waitv other = while_it_is(word, 0);  // so that it returns at once
-  return syscall(SYS_futex_waitv, &other, 1, 0, nullptr, CLOCK_MONOTONIC) == 0 || errno == EAGAIN;
-}
 
 }  // namespace skein::same_host

@@ -52,15 +52,16 @@ void Ending::run() {
 }
 
 Link::Link(Side side, std::shared_ptr<const FileDescriptor> socket, SharedMemory memory,
-           const Guid& own, const Guid& peer, std::function<void()> notify)
+           DoorbellPair doorbells, const Guid& own, const Guid& peer, std::function<void()> notify)
     : side_(side),
       socket_(std::move(socket)),
       memory_(std::make_shared<const SharedMemory>(std::move(memory))),
+      doorbells_(std::move(doorbells)),
       own_(own),
       peer_(peer),
       in_(place_of(*memory_, side == Side::Provider), dds::kLargestSample),
       notify_(std::move(notify)),
-      out_(place_of(*memory_, side == Side::Client)) {}
+      out_(place_of(*memory_, side == Side::Client), doorbells_.out) {}
 
 Duration Link::Patience::begin() const {
   if (on_full && *on_full) (*on_full)();

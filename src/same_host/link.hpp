@@ -43,11 +43,16 @@ class Link : public std::enable_shared_from_this<Link> {
   /// Of the memory of both, which the provider makes.
   static constexpr std::size_t kMemory = 4096 + 2 * kCapacity;
 
+  struct DoorbellPair {
+    FileDescriptor out;  ///< This side's; it wakes the other side's reader.
+    FileDescriptor in;   ///< The other side's; it wakes this side's.
+  };
+
   /// `own` and `peer` are the endpoints' identities on this side and the other. `notify` is called
   /// when the link has ended, from any thread: there may be something for receive(), and then
   /// nothing any more.
   Link(Side side, std::shared_ptr<const FileDescriptor> socket, SharedMemory memory,
-       const Guid& own, const Guid& peer, std::function<void()> notify);
+       DoorbellPair doorbells, const Guid& own, const Guid& peer, std::function<void()> notify);
   ~Link() { close(); }
   Link(const Link&) = delete;
   Link& operator=(const Link&) = delete;
@@ -115,6 +120,7 @@ class Link : public std::enable_shared_from_this<Link> {
   /// Octets that have come of a message without its end.
   std::size_t unfinished() const noexcept { return unfinished_; }
   RingReader& in() noexcept { return in_; }
+  const DoorbellPair& doorbells() const noexcept { return doorbells_; }
 
   /// Both sides learn of the end. Twice is no error.
   void close();
@@ -138,6 +144,7 @@ class Link : public std::enable_shared_from_this<Link> {
   const Side side_;
   const std::shared_ptr<const FileDescriptor> socket_;
   const std::shared_ptr<const SharedMemory> memory_;
+  const DoorbellPair doorbells_;
   const Guid own_;
   const Guid peer_;
   RingReader in_;

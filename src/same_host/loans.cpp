@@ -138,7 +138,7 @@ bool Lender::put(Place& place, const std::shared_ptr<LoanMemory>& memory) {
   const auto reader =
       std::make_shared<Reader>(connection_, process_, LoanNote{number, packet.generation, 0, 0});
   if (!pass(connection_->socket->get(), std::as_bytes(std::span(&packet, 1)),
-            memory->descriptor())) {
+            {memory->descriptor()})) {
     return false;
   }
   ++unread_;
@@ -182,7 +182,7 @@ void Borrower::receive_descriptors(const LoanNote& wanted) {
     Packet packet;
     HandedOver descriptor;
     if (!receive_passed(socket_->get(), std::as_writable_bytes(std::span(&packet, 1)),
-                        descriptor) ||
+                        std::span(&descriptor, 1)) ||
         packet.place >= kLoans) {
       throw BrokenRing("a loan without its memory");
     }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <initializer_list>
 #include <map>
 #include <mutex>
 #include <span>
@@ -22,6 +23,7 @@
 #include "core/system/other_process.hpp"
 #include "core/system/users.hpp"
 #include "core/threads/start_thread.hpp"
+#include "doorbell.hpp"
 #include "pass_descriptor.hpp"
 #include "skein/error.hpp"
 
@@ -34,9 +36,9 @@ using Clock = std::chrono::steady_clock;
 constexpr std::size_t kToldUsers = 16;
 constexpr std::uint64_t kWake = 0;
 
-// What both sides say to each other once; each is a packet. A change of the memory's layout is
-// another version.
-constexpr char kVersion[8] = "skein3";
+// What both sides say to each other once; each is a packet, with which its sender's doorbell comes.
+// A change of the memory's layout is another version.
+constexpr char kVersion[8] = "skein4";
 
 struct Hello {
   char version[8];
@@ -46,7 +48,7 @@ struct Hello {
 struct Answer {
   char version[8];
   Guid server;
-  char refusal[104];  // empty where the memory comes with it
+  char refusal[104];  // empty where the memory comes with it, before the doorbell
 };
 
 std::string address_of(const Guid& provider) { return "skein-call/" + provider.hex(); }
@@ -63,13 +65,19 @@ bool has_our_version(const Packet& packet) {
   return std::memcmp(packet.version, kVersion, sizeof kVersion) == 0;
 }
 
-bool send_answer(int socket, const Answer& answer, int descriptor) {
-  return pass(socket, std::as_bytes(std::span(&answer, 1)), descriptor);
+bool send_answer(int socket, const Answer& answer, std::initializer_list<int> descriptors = {}) {
+  return pass(socket, std::as_bytes(std::span(&answer, 1)), descriptors);
 }
 
-bool receive_answer(int socket, Answer& answer, HandedOver& descriptor) {
-  return receive_passed(socket, std::as_writable_bytes(std::span(&answer, 1)), descriptor) &&
+bool receive_answer(int socket, Answer& answer, std::span<HandedOver> descriptors) {
+  return receive_passed(socket, std::as_writable_bytes(std::span(&answer, 1)), descriptors) &&
          has_our_version(answer);
+}
+
+FileDescriptor new_doorbell() {
+  FileDescriptor doorbell = make_doorbell();
+  if (!doorbell) throw Unavailable(std::string("no doorbell can be made: ") + std::strerror(errno));
+  return doorbell;
 }
 
 }  // namespace
@@ -272,25 +280,29 @@ struct Meeting::State {
 
   void hear(const Newcomer& newcomer, std::vector<Admitted>& admitted) {
     Hello hello{};
-    HandedOver unexpected;
+    HandedOver doorbell;
     if (!receive_passed(newcomer.socket->get(), std::as_writable_bytes(std::span(&hello, 1)),
-                        unexpected)) {
+                        std::span(&doorbell, 1))) {
       ++refused;
       return let_nobody_in(kAfterRefusal);
     }
     try {
-      admit(newcomer, hello, admitted);
+      admit(newcomer, hello, std::move(doorbell), admitted);
     } catch (const Unavailable& why) {
       ++refused;
       auto answer = make_packet<Answer>();
       std::strncpy(answer.refusal, why.what(), sizeof answer.refusal - 1);
-      send_answer(newcomer.socket->get(), answer, -1);
+      send_answer(newcomer.socket->get(), answer);
       let_nobody_in(kAfterRefusal);
     }
   }
 
-  void admit(const Newcomer& newcomer, const Hello& hello, std::vector<Admitted>& admitted) {
+  void admit(const Newcomer& newcomer, const Hello& hello, HandedOver doorbell,
+             std::vector<Admitted>& admitted) {
     if (!has_our_version(hello)) throw Unavailable("the two sides are of different versions");
+    if (!is_doorbell(doorbell)) {
+      throw Unavailable("no eventfd came from it, or no descriptor is left here");
+    }
     if (guests >= rules.guests) {
       throw Unavailable("it has " + std::to_string(guests) + " connections of this kind already");
     }
@@ -308,9 +320,10 @@ struct Meeting::State {
     }
     auto memory = SharedMemory::make(Link::kMemory);
     FileDescriptor descriptor = memory.take_descriptor();
-    const auto link =
-        std::make_shared<Link>(Link::Side::Provider, newcomer.socket, std::move(memory),
-                               newcomer.offer->server, hello.client, newcomer.offer->notify);
+    Link::DoorbellPair doorbells{new_doorbell(), std::move(doorbell)};
+    const auto link = std::make_shared<Link>(
+        Link::Side::Provider, newcomer.socket, std::move(memory), std::move(doorbells),
+        newcomer.offer->server, hello.client, newcomer.offer->notify);
     watch(link, newcomer.socket, newcomer.process);
     ++guests;
     admitted.push_back({newcomer.offer, link, newcomer.socket, std::move(descriptor)});
@@ -324,10 +337,13 @@ struct Meeting::State {
     try {
       if (guest.offer->withdrawn) throw Unavailable("the service has been withdrawn");
       guest.offer->welcome(guest.link);
-      if (send_answer(guest.socket->get(), answer, guest.memory.get())) return;
+      if (send_answer(guest.socket->get(), answer,
+                      {guest.memory.get(), guest.link->doorbells().out.get()})) {
+        return;
+      }
     } catch (const Unavailable& why) {
       std::strncpy(answer.refusal, why.what(), sizeof answer.refusal - 1);
-      send_answer(guest.socket->get(), answer, -1);
+      send_answer(guest.socket->get(), answer);
     }
     guest.link->close();
   }
@@ -397,9 +413,10 @@ struct Meeting::State {
     const auto socket = std::make_shared<const HandedOver>(std::move(contact.socket));
     auto hello = make_packet<Hello>();
     hello.client = client;
+    Link::DoorbellPair doorbells{new_doorbell(), {}};
     // A provider that has closed already may have said why.
-    if (send(socket->get(), &hello, sizeof hello, MSG_NOSIGNAL) != sizeof hello && errno != EPIPE &&
-        errno != ECONNRESET) {
+    if (!pass(socket->get(), std::as_bytes(std::span(&hello, 1)), {doorbells.out.get()}) &&
+        errno != EPIPE && errno != ECONNRESET) {
       refuse_to_join(std::strerror(errno));
     }
     pollfd answered{socket->get(), POLLIN, 0};
@@ -413,21 +430,26 @@ struct Meeting::State {
       if (errno != EINTR) refuse_to_join(std::strerror(errno));
     }
     Answer answer{};
-    HandedOver descriptor;
-    if (!receive_answer(socket->get(), answer, descriptor)) {
+    HandedOver handed[2];  // the memory, and the doorbell
+    if (!receive_answer(socket->get(), answer, handed)) {
       refuse_to_join("the provider turned it away");
     }
-    if (!descriptor) {
+    if (!handed[0]) {
       answer.refusal[sizeof answer.refusal - 1] = '\0';
       refuse_to_join(printable(answer.refusal));
     }
     if (answer.server.participant() != provider.participant()) {
       refuse_to_join("another participant answers under the provider's name");
     }
-    auto memory = SharedMemory::map(std::move(descriptor), Link::kMemory);
+    auto memory = SharedMemory::map(std::move(handed[0]), Link::kMemory);
     memory.take_descriptor();
-    auto link = std::make_shared<Link>(Link::Side::Client, socket, std::move(memory), client,
-                                       answer.server, std::move(notify));
+    if (!is_doorbell(handed[1])) {
+      refuse_to_join("no eventfd came from the provider, or no descriptor is left here");
+    }
+    doorbells.in = std::move(handed[1]);
+    auto link =
+        std::make_shared<Link>(Link::Side::Client, socket, std::move(memory), std::move(doorbells),
+                               client, answer.server, std::move(notify));
     std::lock_guard lock(mutex);
     watch(link, socket, std::nullopt);
     return link;

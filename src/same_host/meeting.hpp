@@ -26,7 +26,7 @@ class Meeting {
   struct Rules {
     /// Who is let in, and whom one connects to; never users that this namespace does not map.
     std::vector<uid_t> users{geteuid(), 0};
-    /// Connections from others at a time, and from one of their processes. Each takes two
+    /// Connections from others at a time, and from one of their processes. Each takes four
     /// descriptors and Link::kMemory.
     std::size_t guests = 1024;
     std::size_t guests_of_process = 128;

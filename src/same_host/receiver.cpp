@@ -16,21 +16,37 @@ namespace {
 constexpr int kMessagesInARow = 16;
 // More than a ring holds: who goes on after the end is not listened to.
 constexpr int kTurnsAfterEnd = 2048;
-// How often it is looked whether callers have left a link: what comes there is heard of after twice
-// that, at the latest.
-constexpr std::chrono::milliseconds kLent{20};
-// Sleeping for so many links costs little.
-constexpr std::size_t kFewLinks = 8;
-// Of more than these a link that has brought nothing while its thread has slept so often is left to
-// QuietLinks: by then its share of those sleeps has cost about what that does.
-constexpr int kSleepsInVain = 1000;
-constexpr std::size_t kMostLinks = kMostWords - 1;
+// A busy thread listens to the doorbells of other links, which takes a system call, once after so
+// many turns; one that spins after so many looks.
+constexpr int kTurnsUnheard = 8;
+constexpr int kLooksUnheard = 16;
+// The other side can make a caller miss that its own side wakes it, for so long at most.
+constexpr std::chrono::milliseconds kMissed{50};
+// What is for a caller that does something else is taken back after so long, or twice that.
+constexpr std::chrono::milliseconds kPaused{20};
+constexpr std::chrono::milliseconds kNotAtAll{0};
 
 }  // namespace
 
 void SpinPolicy::note(Duration waited) {
   score_ = waited <= limit_ ? std::min(score_ + 1, kMost) : std::max(score_ - 4, 0);
 }
+
+/// What wakes the leading thread. It outlives the receiver, for links that do.
+struct Receiver::News {
+  void tell_of_changes() {
+    changed = true;
+    doorbells.call();
+  }
+
+  void tell_of_pause() {
+    if (!paused && !paused.exchange(true)) doorbells.call();
+  }
+
+  Doorbells doorbells;
+  std::atomic<bool> changed{false};  // a link is new, has ended, or was taken back
+  std::atomic<bool> paused{false};   // a caller has, and has not been looked for since
+};
 
 /// A thread that takes messages: one that leads, or a caller.
 struct Receiver::Taker {
@@ -46,17 +62,15 @@ struct Receiver::Taker {
 /// A turn whose link is locked.
 class Receiver::OwnTurn final : public Turn {
  public:
-  OwnTurn(Receiver& receiver, Taker& taker, Link& link, Bytes& spare,
-          std::unique_lock<std::mutex>& lock)
-      : receiver_(receiver), taker_(taker), link_(link), spare_(spare), lock_(lock) {
+  OwnTurn(Taker& taker, Link& link, Bytes& spare, std::unique_lock<std::mutex>& lock)
+      : taker_(taker), link_(link), spare_(spare), lock_(lock) {
     if (taker.who != Who::Caller) answering_.emplace(link, taker.sleepers, taker.others_wait);
   }
 
-  // Of a consumer the receiver itself is the stand-in.
+  // The receiver stands in for a consumer, and nobody for the receiver.
   bool leave() override {
     if (left()) return true;
-    if (taker_.who == Who::Caller) return false;
-    if (taker_.who == Who::Leader && !receiver_.has_stand_in()) return false;
+    if (taker_.who != Who::Consumer) return false;
     link_.release(spare_);
     lock_.unlock();
     taker_.left = taker_.lead->leave();
@@ -66,7 +80,6 @@ class Receiver::OwnTurn final : public Turn {
   bool come_back() { return taker_.lead->take_back(std::exchange(taker_.left, 0)); }
 
  private:
-  Receiver& receiver_;  // gone, perhaps, once a consumer has left its turn
   Taker& taker_;
   Link& link_;
   Bytes& spare_;
@@ -75,52 +88,62 @@ class Receiver::OwnTurn final : public Turn {
 };
 
 // Once it is over, the inbox and the receiver may be gone.
-class Receiver::Entry final : public dds::CallerDelivery, public WatchedLink {
+class Receiver::Entry final : public dds::CallerDelivery {
  public:
-  Entry(Receiver& receiver_, std::shared_ptr<Link> link_, Inbox& inbox_)
-      : WatchedLink(std::move(link_)),
+  Entry(Receiver& receiver_, std::shared_ptr<Link> link_, Inbox& inbox_, std::uint64_t id_)
+      : link(std::move(link_)),
         inbox(inbox_),
+        id(id_),
         receiver(receiver_),
         spin(receiver_.spin_limit_) {}
 
   void lend() override {
-    if (!used) used = true;
-    if (!lent) lent = true;
+    if (pauses % 2 != 0) ++pauses;
+    link->in().lend();
+  }
+  void pause() override {
+    if (pauses % 2 == 0) ++pauses;
+    news->tell_of_pause();
   }
   void take_back() override {
-    if (lent && lent.exchange(false)) notify();
+    if (link->in().take_back()) news->tell_of_changes();
   }
   // Who unwound from it would leave the call's result to be written where it was.
   void deliver_until(const std::function<bool()>& over_) noexcept override;
   void wake() override {
-    called = 1;
-    if (sleeps) futex_wake(called);
+    called = true;
+    if (!sleeps) return;
+    link->in().stay_awake(RingReader::Who::Caller);
+    futex_wake(link->in().word(RingReader::Who::Caller));
   }
 
   /// For who leads.
   bool has_something() const {
-    if (over || (lent && begun && !link->ended())) return false;
-    return !begun || link->in().ready() || link->ended();
+    if (over) return false;
+    return !begun || link->ended() || (link->in().ready() && !link->in().lent());
   }
 
+  const std::shared_ptr<Link> link;
   Inbox& inbox;
-  std::mutex mutex;  // held while a function of the inbox runs
+  const std::uint64_t id;  // its doorbell's
+  std::mutex mutex;        // held while a function of the inbox runs
   std::atomic<bool> begun{false};
   std::size_t unfinished = 0;  // as others know it; under the mutex
   int turns_after_end = 0;
-  int sleeps_in_vain = 0;  // of who leads, since it has brought something
-  std::atomic<bool> lent{false};
-  std::atomic<bool> used{false};        // since the receiver's thread last looked
-  std::atomic<bool> has_caller{false};  // which is in deliver_until()
+  bool attended = false;                 // of who leads
+  std::uint32_t pauses_seen = 0;         // of who leads
+  std::atomic<std::uint32_t> pauses{0};  // odd while a caller pauses
+  std::atomic<bool> over{false};         // nobody need wait for it any more
+  std::atomic<bool> has_caller{false};   // which is in deliver_until()
 
  private:
   void sleep(const std::function<bool()>& over_);
 
   Receiver& receiver;
-  const std::function<void()> notify = receiver.notifier();
-  // The caller's. The word in the ring is the other side's as well: this one it cannot reach.
+  const std::shared_ptr<News> news = receiver.news_;
+  // The caller's.
   SpinPolicy spin;
-  Word called{0};
+  std::atomic<bool> called{false};
   std::atomic<bool> sleeps{false};
 };
 
@@ -136,7 +159,7 @@ void Receiver::Entry::deliver_until(const std::function<bool()>& over_) noexcept
 }
 
 void Receiver::Entry::sleep(const std::function<bool()>& over_) {
-  called = 0;
+  called = false;
   if (over || over_()) return;
   RingReader& in = link->in();
   const bool may_spin = spin.limit() > Duration::zero();
@@ -144,15 +167,14 @@ void Receiver::Entry::sleep(const std::function<bool()>& over_) {
   const Instant give_up = saturating_sum(begin, spin.budget());
   bool come = false;
   while (!come && spin.budget() > Duration::zero() && std::chrono::steady_clock::now() < give_up) {
-    come = in.ready() || called != 0;
+    come = in.ready() || called;
   }
   if (!come) {
     sleeps = true;
     const bool idle = in.prepare_to_sleep(RingReader::Who::Caller);
-    if (idle && !over && !over_()) {
-      futex_waitv words[] = {while_it_is(called, 0),
-                             while_it_is(in.word(RingReader::Who::Caller), 1)};
-      futex_wait(words);
+    // The other side may write to this word, and so undo what wake() has done.
+    if (idle && !called && !over) {
+      futex_wait_for(in.word(RingReader::Who::Caller), 1, kMissed);
     }
     in.stay_awake(RingReader::Who::Caller);
     sleeps = false;
@@ -164,9 +186,10 @@ void Receiver::Entry::sleep(const std::function<bool()>& over_) {
 class Receiver::Consumer final : public dds::CallerDelivery {
  public:
   explicit Consumer(Receiver& receiver)
-      : receiver_(receiver), lead_(receiver.lead_), notify_(receiver.notifier()) {}
+      : receiver_(receiver), lead_(receiver.lead_), news_(receiver.news_) {}
 
   void lend() override {}
+  void pause() override {}
   void take_back() override {
     if (lead_->take()) lead_->give_up();
   }
@@ -176,7 +199,7 @@ class Receiver::Consumer final : public dds::CallerDelivery {
   }
   void wake() override {
     call();
-    notify_();
+    news_->doorbells.call();
   }
 
   bool wants() const { return wants_; }
@@ -201,7 +224,7 @@ class Receiver::Consumer final : public dds::CallerDelivery {
     while (true) {
       if (!wants_) {
         wants_ = true;
-        notify_();
+        news_->doorbells.call();
       }
       called_ = 0;
       if (lead_->take()) {
@@ -218,7 +241,7 @@ class Receiver::Consumer final : public dds::CallerDelivery {
 
   Receiver& receiver_;
   const std::shared_ptr<Lead> lead_;
-  const std::function<void()> notify_;
+  const std::shared_ptr<News> news_;
   std::atomic<bool> wants_{false};
   Word called_{1};  // 0 while it waits to be given the lead
 };
@@ -227,42 +250,40 @@ Receiver::Receiver(std::string name, TimeSpan spin, std::shared_ptr<Unfinished> 
     : name_(std::move(name)),
       spin_limit_(spin),
       unfinished_(std::move(unfinished)),
-      quiet_(name_, notifier()),
+      news_(std::make_shared<News>()),
       consumer_(std::make_shared<Consumer>(*this)),
       spin_(spin) {}
 
 Receiver::~Receiver() {
-  {
-    std::lock_guard lock(mutex_);
-    stopping_ = true;
-  }
+  stopping_ = true;
   consumer_->end();
-  notify();
+  news_->doorbells.call();
   lead_->wake();
   if (thread_.joinable()) thread_.join();
-  // The first one alone starts it.
-  if (stand_in_.joinable()) stand_in_.join();
   lead_->end();
 }
 
 std::function<void()> Receiver::notifier() const {
-  return [notified = notified_] {
-    if (notified->exchange(1) == 0) futex_wake(*notified);
-  };
+  return [news = news_] { news->tell_of_changes(); };
 }
 
-void Receiver::notify() const { notifier()(); }
-
 std::shared_ptr<dds::CallerDelivery> Receiver::add(std::shared_ptr<Link> link, Inbox& inbox) {
-  const auto entry = std::make_shared<Entry>(*this, std::move(link), inbox);
+  std::shared_ptr<Entry> entry;
   {
     std::lock_guard lock(mutex_);
-    if (entries_.size() >= kFewLinks) quiet_.reserve(entries_.size() + 1 - kFewLinks);
-    if (!thread_.joinable()) thread_ = start_thread(name_, [this] { run(true); });
+    entry = std::make_shared<Entry>(*this, std::move(link), inbox, ++last_id_);
+    news_->doorbells.add(entry->link->doorbells().in, entry->id);
+    try {
+      if (!thread_.joinable()) thread_ = start_thread(name_, [this] { run(); });
+    } catch (...) {
+      news_->doorbells.remove(entry->link->doorbells().in);
+      throw;
+    }
     entries_.push_back(entry);
+    added_.push_back(entry);
     consumer_->useful = true;
   }
-  notify();
+  news_->tell_of_changes();
   return entry;
 }
 
@@ -278,6 +299,7 @@ void Receiver::remove(Inbox& inbox) {
     entries_.erase(first, entries_.end());
     if (entries_.empty()) consumer_->useful = false;
   }
+  for (const auto& entry : removed) news_->doorbells.remove(entry->link->doorbells().in);
   Wakes wakes;
   for (const auto& entry : removed) {
     {
@@ -288,8 +310,7 @@ void Receiver::remove(Inbox& inbox) {
     entry->wake();
     entry->link->wake_peer(wakes);
   }
-  quiet_.drop_ended();
-  notify();
+  news_->tell_of_changes();
 }
 
 std::size_t Receiver::links() const {
@@ -297,87 +318,101 @@ std::size_t Receiver::links() const {
   return entries_.size();
 }
 
-void Receiver::run(bool leads) {
+void Receiver::run() {
   pthread_setname_np(pthread_self(), name_.c_str());
-  leads = leads && lead_->take();
-  while (!is_stopping()) {
+  bool leads = lead_->take();
+  while (!stopping_) {
     if (!leads) {
-      leads = lead_->stand_by([this] { return is_stopping(); });
-    } else if (!lead(Who::Leader, [this] { return consumer_->wants(); }) || consumer_->give()) {
-      leads = false;
+      leads = lead_->stand_by([this] { return stopping_.load(); });
+    } else {
+      lead(Who::Receiver, [this] { return consumer_->wants(); });
+      leads = stopping_ || !consumer_->give();
     }
   }
   if (leads) lead_->leave();
 }
 
-bool Receiver::is_stopping() const {
-  std::lock_guard lock(mutex_);
-  return stopping_;
-}
-
-// By who has the lead, until `over`, which notify() makes it look at, or the receiver ends. False
-// where somebody has stood in; a consumer's receiver may be gone then.
+// By who has the lead, until `over`, which a call() at the doorbells makes it look at, or the
+// receiver ends. False if the receiver has stood in; it may be gone then.
 bool Receiver::lead(Who who, const std::function<bool()>& over) {
   Taker taker(who, lead_.get());
+  wake_peers();  // those whom the thread that led before has let sleep
+  if (turns_ > 0) attend_rung(kNotAtAll);
   while (true) {
-    wake_peers();  // also those whom the thread that led before has let sleep
-    taker.sleepers.clear();
-    notified_->store(0);
-    Entries entries;  // at last those before, whose links may end with them: not under the lock
-    {
-      std::lock_guard lock(mutex_);
-      if (stopping_) return true;
-      std::ranges::copy_if(entries_, std::back_inserter(entries),
-                           [](const auto& entry) { return !entry->quiet || entry->link->ended(); });
+    news_->doorbells.forget_call();
+    if (news_->changed && news_->changed.exchange(false)) take_in_changes();
+    if (stopping_ || over()) break;
+    const Looked looked = look_at_all(taker);
+    if (looked == Looked::Replaced) return false;
+    if (looked == Looked::Something) {
+      if (turns_ >= kTurnsUnheard) attend_rung(kNotAtAll);
+      continue;
     }
-    led_.swap(entries);
-    entries.clear();
-    while (notified_->load() == 0) {
-      if (over()) {
-        wake(taker.sleepers);
-        return true;
-      }
-      const Looked looked = look_at_all(taker);
-      if (looked == Looked::Replaced) return false;
-      if (looked == Looked::Nothing) {
-        wake(taker.sleepers);
-        await();
-      }
-    }
-    drop_ended();
+    // Clients that have been let sleep sleep on while there are requests of others.
+    if (taker.sleepers.any() && !taker.sleepers.due() && attend_rung(kNotAtAll)) continue;
+    wake(taker.sleepers);
+    await();
   }
-}
-
-bool Receiver::has_stand_in() {
-  if (has_stand_in_) return true;
-  std::lock_guard lock(mutex_);
-  if (stopping_) return false;
-  try {
-    stand_in_ = start_thread(name_, [this] { run(false); });
-  } catch (const Error&) {
-    return false;
-  }
-  has_stand_in_ = true;
+  wake(taker.sleepers);
   return true;
 }
 
+// What was new, has ended, or was taken back.
+void Receiver::take_in_changes() {
+  Entries added;
+  Entries ended;  // whose links may end with them: not under the lock
+  {
+    std::lock_guard lock(mutex_);
+    added.swap(added_);
+    const auto first = std::stable_partition(entries_.begin(), entries_.end(),
+                                             [](const auto& entry) { return !entry->over; });
+    ended.assign(first, entries_.end());
+    entries_.erase(first, entries_.end());
+    if (entries_.empty()) consumer_->useful = false;
+  }
+  for (const auto& entry : ended) news_->doorbells.remove(entry->link->doorbells().in);
+  for (const auto& entry : added) {
+    led_.emplace(entry->id, entry);
+    attend(entry);
+  }
+  std::erase_if(attended_, [](const auto& entry) { return entry->over.load(); });
+  std::erase_if(led_, [](const auto& each) { return each.second->over.load(); });
+  for (const auto& [id, entry] : led_) {
+    if (entry->has_something()) attend(entry);
+  }
+}
+
+void Receiver::attend(const std::shared_ptr<Entry>& entry) {
+  if (!std::exchange(entry->attended, true)) attended_.push_back(entry);
+}
+
+// Whether any rang.
+bool Receiver::attend_rung(std::optional<std::chrono::milliseconds> longest) {
+  turns_ = 0;
+  const auto rung = news_->doorbells.wait(longest);
+  for (const std::uint64_t id : rung) {
+    if (const auto found = led_.find(id); found != led_.end()) attend(found->second);
+  }
+  return !rung.empty();
+}
+
 Receiver::Looked Receiver::look_at_all(Taker& taker) {
-  const auto next = [&](Entries::const_iterator from) {
-    return std::find_if(from, led_.cend(),
-                        [](const auto& entry) { return entry->has_something(); });
+  const auto next = [&](std::size_t from) {
+    while (from < attended_.size() && !attended_[from]->has_something()) ++from;
+    return from;
   };
   Looked all = Looked::Nothing;
-  for (auto entry = next(led_.cbegin()); entry != led_.cend();) {
-    const auto after = next(entry + 1);
-    taker.others_wait = after != led_.cend();
-    const Looked looked = look_at(**entry, spare_, taker);
+  for (std::size_t i = next(0); i < attended_.size();) {
+    const std::size_t after = next(i + 1);
+    taker.others_wait = after < attended_.size();
+    const Looked looked = look_at(*attended_[i], spare_, taker);
     if (looked == Looked::Replaced) return looked;
     if (looked == Looked::Something) {
       all = looked;
-      (*entry)->sleeps_in_vain = 0;
+      ++turns_;
     }
     if (taker.sleepers.due()) wake(taker.sleepers);  // also where no whole message has come
-    entry = after;
+    i = after;
   }
   return all;
 }
@@ -396,7 +431,7 @@ Receiver::Looked Receiver::look_at(Entry& entry, Bytes& spare, Taker& taker) {
       const auto message = link.receive(spare);
       if (!message) break;
       if (entry.unfinished != 0) unfinished_->change(std::exchange(entry.unfinished, 0), 0);
-      OwnTurn turn(*this, taker, link, spare, lock);
+      OwnTurn turn(taker, link, spare, lock);
       entry.inbox.on_message(link, *message, turn);
       const bool left = turn.left();
       if (left && !turn.come_back()) return Looked::Replaced;
@@ -435,33 +470,6 @@ bool Receiver::brings_too_much(Entry& entry) {
   return true;
 }
 
-void Receiver::drop_ended() {
-  {
-    std::lock_guard lock(mutex_);
-    const std::size_t ended =
-        std::erase_if(entries_, [](const auto& entry) { return entry->over.load(); });
-    if (ended == 0) return;
-    if (entries_.empty()) consumer_->useful = false;
-  }
-  quiet_.drop_ended();
-}
-
-// To QuietLinks: those that bring little, and the latest where they are more than one thread can
-// wait for.
-void Receiver::leave_quiet_ones() {
-  const auto is_waited_for = [](const auto& entry) { return !entry->lent && !entry->over; };
-  if (led_.size() <= kFewLinks) return;
-  if (std::ranges::count_if(led_, is_waited_for) <= std::ptrdiff_t{kFewLinks}) return;
-  std::size_t kept = 0;
-  std::erase_if(led_, [&](const auto& entry) {
-    if (!is_waited_for(entry) || !entry->begun || entry->link->ended()) return false;
-    const bool is_quiet = ++entry->sleeps_in_vain >= kSleepsInVain;
-    if (!is_quiet && kept++ < kMostLinks) return false;
-    entry->sleeps_in_vain = 0;
-    return quiet_.add(entry);
-  });
-}
-
 void Receiver::wake(Sleepers& sleepers) const {
   if (!sleepers.any()) return;
   sleepers.clear();
@@ -470,60 +478,61 @@ void Receiver::wake(Sleepers& sleepers) const {
 
 void Receiver::wake_peers() const {
   Wakes wakes;
-  for (const auto& entry : led_) entry->link->wake_peer(wakes);
+  for (const auto& entry : attended_) entry->link->wake_peer(wakes);
 }
 
+// Until a link has something, or there is a call.
 void Receiver::await() {
-  leave_quiet_ones();
-  const auto ready = [&] {
-    return notified_->load() != 0 || std::ranges::any_of(led_, [](const auto& entry) {
-             return !entry->over && !entry->lent && entry->link->in().ready();
-           });
-  };
-  const Instant begin =
-      spin_limit_ > Duration::zero() ? std::chrono::steady_clock::now() : Instant();
+  const bool spins = spin_limit_ > Duration::zero();
+  const Instant begin = spins ? std::chrono::steady_clock::now() : Instant();
   const Instant give_up = saturating_sum(begin, spin_.budget());
+  const auto has_something = [](const auto& entry) { return entry->has_something(); };
   bool come = false;
-  while (!come && spin_.budget() > Duration::zero() && std::chrono::steady_clock::now() < give_up) {
-    come = ready();
+  for (int i = 1; !come && spin_.budget() > Duration::zero(); ++i) {
+    if (std::chrono::steady_clock::now() >= give_up) break;
+    if (i % kLooksUnheard == 0) attend_rung(kNotAtAll);
+    come = news_->doorbells.called() || std::ranges::any_of(attended_, has_something);
   }
-  if (!come) sleep();
-  if (spin_limit_ > Duration::zero()) spin_.note(std::chrono::steady_clock::now() - begin);
+  if (!come && may_sleep()) sleep();
+  if (spins) spin_.note(std::chrono::steady_clock::now() - begin);
 }
 
-// Until a link has something, or somebody notifies.
 void Receiver::sleep() {
-  futex_waitv words[kMostWords];
-  std::size_t count = 0;
-  words[count++] = while_it_is(*notified_, 0);
-  bool idle = true;
-  bool any_lent = false;
-  for (const auto& entry : led_) {
-    if (entry->over) continue;
-    if (entry->lent) {
-      any_lent = true;
-      continue;
-    }
-    idle = entry->link->in().prepare_to_sleep() && idle && count < kMostWords;
-    if (count < kMostWords) words[count++] = while_it_is(entry->link->in().word(), 1);
+  if (!news_->paused) {
+    attend_rung({});
+    return;
   }
-  if (!any_lent) {
-    look_at_lent_ = Instant::max();
-  } else if (look_at_lent_ == Instant::max()) {
-    look_at_lent_ = std::chrono::steady_clock::now() + kLent;
+  const Instant now = std::chrono::steady_clock::now();
+  if (look_at_paused_ == Instant::max()) look_at_paused_ = now + kPaused;
+  if (now < look_at_paused_) {
+    attend_rung(std::chrono::ceil<std::chrono::milliseconds>(look_at_paused_ - now));
+  } else {
+    take_back_paused();
   }
-  if (idle) futex_wait(std::span(words, count), look_at_lent_);
-  for (const auto& entry : led_) {
-    if (!entry->over) entry->link->in().stay_awake();
-  }
-  if (any_lent && std::chrono::steady_clock::now() >= look_at_lent_) take_back_unused();
 }
 
-void Receiver::take_back_unused() {
-  look_at_lent_ = Instant::max();
-  for (const auto& entry : led_) {
-    if (!entry->used.exchange(false) && !entry->has_caller) entry->lent = false;
+// From callers that have not come back since this was looked at before.
+void Receiver::take_back_paused() {
+  look_at_paused_ = Instant::max();
+  news_->paused = false;
+  for (const auto& [id, entry] : led_) {
+    const std::uint32_t pauses = entry->pauses;
+    if (pauses % 2 == 0) continue;
+    if (std::exchange(entry->pauses_seen, pauses) != pauses) {
+      news_->paused = true;
+    } else if (entry->link->in().take_back()) {
+      attend(entry);
+    }
   }
+}
+
+// From now on the doorbells of all links ring that bring something; unless one has already.
+bool Receiver::may_sleep() {
+  std::erase_if(attended_, [](const auto& entry) {
+    entry->attended = entry->has_something() || !entry->link->in().prepare_to_sleep();
+    return !entry->attended;
+  });
+  return attended_.empty();
 }
 
 }  // namespace skein::same_host

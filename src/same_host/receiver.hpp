@@ -1,10 +1,13 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <thread>
@@ -12,10 +15,10 @@
 
 #include "dds/port/largest_sample.hpp"
 #include "dds/port/port.hpp"
+#include "doorbell.hpp"
 #include "futex.hpp"
 #include "lead.hpp"
 #include "link.hpp"
-#include "quiet_links.hpp"
 #include "skein/clock.hpp"
 
 namespace skein::same_host {
@@ -82,11 +85,10 @@ class Unfinished {
   std::atomic<std::size_t> all_{0};
 };
 
-/// One thread that takes messages from many links, and sleeps while none has any. A thread that
-/// waits for a message of one link may take it itself; one that waits for any link's may lead in
-/// the receiver's place. Where the thread that leads has left its turn, and has not come back after
-/// 10 ms, another one stands in for it, and the first one for that from then on. Of many links
-/// those that bring little are waited for by other threads, so that they cost the others nothing. A
+/// One thread that takes messages from many links, and sleeps while none has any; links that bring
+/// nothing cost it nothing. A thread that waits for a message of one link may take it itself; one
+/// that waits for any link's may lead in the receiver's place. If that one leaves its turn, and
+/// does not come back within 10 ms, the receiver's own thread takes what comes until it does. A
 /// link that brings more of a message without its end than others leave room for is ended.
 /// Thread-safe.
 class Receiver {
@@ -100,7 +102,7 @@ class Receiver {
   Receiver(const Receiver&) = delete;
   Receiver& operator=(const Receiver&) = delete;
 
-  /// For Link: makes the thread look at all of them. It may outlive the receiver.
+  /// For Link: makes the thread look whether links have ended. It may outlive the receiver.
   std::function<void()> notifier() const;
 
   /// Throws Unavailable where there is no thread. What it returns is for threads that wait for what
@@ -114,52 +116,51 @@ class Receiver {
   /// the inbox, and must not use it any more. Not from one of them.
   void remove(Inbox& inbox);
   std::size_t links() const;
-  /// Of these those that QuietLinks waits for.
-  std::size_t quiet_links() const { return quiet_.size(); }
 
  private:
   class Entry;
   class Consumer;
   class OwnTurn;
   using Entries = std::vector<std::shared_ptr<Entry>>;
-  enum class Who { Leader, Consumer, Caller };
+  enum class Who { Receiver, Consumer, Caller };
   enum class Looked { Nothing, Something, Replaced };
+  struct News;
   struct Taker;
 
-  void run(bool leads);
+  void run();
   bool lead(Who who, const std::function<bool()>& over);
-  bool has_stand_in();
-  bool is_stopping() const;
   Looked look_at(Entry& entry, Bytes& spare, Taker& taker);
   bool brings_too_much(Entry& entry);
   Looked look_at_all(Taker& taker);
-  void drop_ended();
-  void leave_quiet_ones();
+  void take_in_changes();
+  void attend(const std::shared_ptr<Entry>& entry);
+  bool attend_rung(std::optional<std::chrono::milliseconds> longest);
   void wake(Sleepers& sleepers) const;
   void wake_peers() const;
   void await();
+  bool may_sleep();
   void sleep();
-  void take_back_unused();
-  void notify() const;
+  void take_back_paused();
 
   const std::string name_;
   const Duration spin_limit_;
   const std::shared_ptr<Unfinished> unfinished_;
-  const std::shared_ptr<Word> notified_ = std::make_shared<Word>(0);
-  QuietLinks quiet_;
+  const std::shared_ptr<News> news_;
   mutable std::mutex mutex_;
   Entries entries_;
-  bool stopping_ = false;
+  Entries added_;  // since the leading thread last looked
+  std::uint64_t last_id_ = 0;
   std::thread thread_;
-  std::thread stand_in_;  // once it was needed
-  std::atomic<bool> has_stand_in_{false};
+  std::atomic<bool> stopping_{false};
   const std::shared_ptr<Lead> lead_ = std::make_shared<Lead>();
   const std::shared_ptr<Consumer> consumer_;
   // The leading thread's. A consumer that has left its turn keeps no link from ending.
-  Entries led_;
+  std::map<std::uint64_t, std::shared_ptr<Entry>> led_;
+  Entries attended_;  // of those: the others' doorbells ring
+  int turns_ = 0;     // since the doorbells were last listened to
+  Instant look_at_paused_ = Instant::max();
   SpinPolicy spin_;
   Bytes spare_;
-  Instant look_at_lent_ = Instant::max();
 };
 
 }  // namespace skein::same_host

@@ -6,6 +6,8 @@
 #include <bit>
 #include <cstring>
 
+#include "doorbell.hpp"
+
 namespace skein::same_host {
 namespace {
 
@@ -24,6 +26,9 @@ constexpr std::size_t kWorthwhile = 1 << 10;
 // From here on an empty ring is used from its beginning again: one whose messages are small touches
 // few pages.
 constexpr std::size_t kRestart = 16 << 10;
+
+// After so long without room the reader is called also where a caller is to read.
+constexpr std::chrono::milliseconds kCallerLate{20};
 
 constexpr std::uint64_t frame_size(std::uint64_t content) {
   return kHeader + ((content + kHeader - 1) & ~std::uint64_t{kHeader - 1});
@@ -123,13 +128,25 @@ void RingWriter::publish(More more) {
   RingState& state = *place_.state;
   state.written.store(written_);
   const std::uint32_t here = more == More::Follows ? this_core() : 0;
-  if ((here == 0 || state.reader_core != here) && wake(state.reader_sleeps)) ++wakes_;
+  if ((here == 0 || state.reader_core != here) && ring_reader()) ++wakes_;
   if ((here == 0 || state.caller_core != here) && wake(state.caller_sleeps)) ++wakes_;
+}
+
+// In one order with RingReader::take_back(): either it sees what was written, or this sees that it
+// was taken back.
+bool RingWriter::reader_sleeps() const {
+  return place_.state->reader_sleeps.load() != 0 && place_.state->caller_reads.load() == 0;
+}
+
+bool RingWriter::ring_reader() {
+  if (!reader_sleeps() || !is_to_be_woken(place_.state->reader_sleeps)) return false;
+  ring(doorbell_);
+  return true;
 }
 
 bool RingWriter::reader_sleeps_here() const {
   const RingState& state = *place_.state;
-  const bool reader = state.reader_sleeps != 0;
+  const bool reader = reader_sleeps();
   const bool caller = state.caller_sleeps != 0;
   if (!reader && !caller) return false;
   const std::uint32_t here = this_core();
@@ -138,9 +155,8 @@ bool RingWriter::reader_sleeps_here() const {
 }
 
 void RingWriter::wake_reader(Wakes& wakes) {
-  for (Word* sleeps : {&place_.state->reader_sleeps, &place_.state->caller_sleeps}) {
-    if (is_to_be_woken(*sleeps)) wakes.add(*sleeps);
-  }
+  ring_reader();
+  if (is_to_be_woken(place_.state->caller_sleeps)) wakes.add(place_.state->caller_sleeps);
 }
 
 bool RingWriter::is_to_be_woken(Word& sleeps) {
@@ -172,11 +188,18 @@ bool RingWriter::await_change(Instant deadline, const std::function<bool()>& end
   return !over;
 }
 
+// A caller that is to take what comes may do something else for now: then the reader does.
 bool RingWriter::write(Part part, Duration patience, const std::function<bool()>& ended) {
   if (put(part)) return true;
-  const Instant deadline = std::chrono::steady_clock::now() + patience;
+  const Instant begin = std::chrono::steady_clock::now();
+  const Instant deadline = begin + patience;
+  Instant look = std::min(deadline, begin + kCallerLate);
   do {
-    if (!await_change(deadline, ended)) return false;
+    if (await_change(look, ended)) continue;
+    if (ended() || look == deadline) return false;
+    look = deadline;
+    place_.state->caller_reads.store(0);
+    ring_reader();
   } while (!put(part));
   return true;
 }
@@ -255,7 +278,7 @@ bool RingReader::prepare_to_sleep(Who who) {
   const std::uint32_t here = sleeping_core();
   if (core.load(std::memory_order_relaxed) != here) core.store(here, std::memory_order_relaxed);
   word(who).store(1);
-  if (place_.state->written.load() == read_) return true;
+  if (place_.state->written.load() == read_ || (who == Who::Reader && lent())) return true;
   stay_awake(who);
   return false;
 }

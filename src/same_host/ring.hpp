@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 
+#include "core/system/file_descriptor.hpp"
 #include "futex.hpp"
 #include "skein/clock.hpp"
 #include "skein/detail/bytes.hpp"
@@ -22,13 +23,13 @@
 namespace skein::same_host {
 
 /// What both sides of a ring change, apart from its content: how far they are, and whether they
-/// sleep. All zero at first. Each member is written by one side in the main, and has a cache line
-/// of its own.
+/// sleep. All zero at first. What one side writes in the main has a cache line of its own.
 struct RingState {
   alignas(64) std::atomic<std::uint64_t> written{0};  ///< Octets, ever.
   alignas(64) std::atomic<std::uint64_t> read{0};     ///< Of those.
-  alignas(64) Word reader_sleeps{0};                  ///< 1 while it may sleep on this word.
-  Word caller_sleeps{0};  ///< As much of a thread that reads for itself.
+  alignas(64) Word reader_sleeps{0};                  ///< 1 while it may sleep.
+  Word caller_sleeps{0};  ///< 1 while a thread that reads for itself may sleep on this word.
+  Word caller_reads{0};   ///< 1 while such a thread is to take what comes: the reader is not woken.
   Word reader_core{0};    ///< Where it went to sleep, from 1 on; 0: it is to be woken at once.
   Word caller_core{0};
   alignas(64) Word writer_sleeps{0};
@@ -53,7 +54,9 @@ class BrokenRing : public Disconnected {
 /// Puts messages in. Not thread-safe.
 class RingWriter {
  public:
-  explicit RingWriter(const RingPlace& place) : place_(place) {}
+  /// `doorbell` wakes the reader; it outlives the writer. None: the reader never sleeps.
+  RingWriter(const RingPlace& place, const FileDescriptor& doorbell)
+      : place_(place), doorbell_(doorbell) {}
 
   /// A message on its way.
   struct Part {
@@ -95,6 +98,8 @@ class RingWriter {
 
  private:
   static bool is_to_be_woken(Word& sleeps);
+  bool reader_sleeps() const;
+  bool ring_reader();
   static bool wake(Word& sleeps);
   std::uint64_t in_flight();
   bool may_restart(std::size_t offset, std::size_t size);
@@ -104,6 +109,7 @@ class RingWriter {
   bool await_change(Instant deadline, const std::function<bool()>& ended);
 
   const RingPlace place_;
+  const FileDescriptor& doorbell_;
   std::uint64_t written_ = 0;  // some of it not published yet
   std::uint64_t read_ = 0;     // as last seen
   std::size_t look_at_ = 0;    // the offset from which on it is looked whether the ring is empty
@@ -134,12 +140,25 @@ class RingReader {
            place_.state->written.load(std::memory_order_acquire) != read;
   }
 
-  /// False where something has come already: else the writer wakes who sleeps while `word()` is 1.
+  /// False if something has come that this one is to take. Else the writer sets `word()` to 0 when
+  /// something comes; it rings the reader's doorbell, or wakes a caller that sleeps on the word.
   bool prepare_to_sleep(Who who = Who::Reader);
   void stay_awake(Who who = Who::Reader) { word(who).store(0); }
   Word& word(Who who = Who::Reader) const noexcept {
     return who == Who::Reader ? place_.state->reader_sleeps : place_.state->caller_sleeps;
   }
+
+  /// From lend() to take_back() what comes is a caller's: the reader is not woken for it.
+  void lend() {
+    if (!lent()) place_.state->caller_reads.store(1);
+  }
+  /// Whether something has come meanwhile, for which the reader was not woken.
+  bool take_back() {
+    if (!lent()) return false;
+    place_.state->caller_reads.store(0);
+    return place_.state->written.load() != read_;
+  }
+  bool lent() const { return place_.state->caller_reads.load() != 0; }
 
  private:
   std::uint64_t available();

@@ -26,12 +26,18 @@ struct Incoming final : Answers {
     ended = finished.load();
   }
   void wake() override { ++woken; }
+  void begin(bool blocking) override {
+    CHECK(blocking);
+    ++calls;
+  }
+  void end() override { --calls; }
   void attend() override { ++attended; }
   void leave() override { --attended; }
 
   std::function<void()> bring = [] {};
   std::atomic<int> taken{0};
   std::atomic<int> woken{0};
+  std::atomic<int> calls{0};
   std::atomic<int> attended{0};
   bool ended = false;
 };
@@ -118,6 +124,7 @@ TEST_CASE("a thread that waits for a call takes its answer itself") {
   CHECK(asked.incoming->taken == 1);
   CHECK(asked.incoming->ended);
   CHECK(asked.incoming->attended == 0);
+  CHECK(asked.incoming->calls == 0);
   asked.call->wait();
   CHECK(asked.incoming->taken == 1);
 }
@@ -177,4 +184,5 @@ TEST_CASE("a call that is awaited before its connection is known is attended fro
   over->cancel();
   over->set_answers(incoming);
   CHECK(incoming->attended == 0);
+  CHECK(incoming->calls == 0);
 }

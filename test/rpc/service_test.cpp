@@ -62,7 +62,23 @@ const OperationInfo* operation_of(const rpc::Service& service, std::string_view 
   return nullptr;
 }
 
-/// A service whose calls may run on the thread that brings them; what is said to it runs inside.
+/// Requests as a thread takes them that waits for them: `bring` says what comes while it does.
+struct Requests final : dds::CallerDelivery {
+  void lend() override {}
+  void pause() override {}
+  void take_back() override { ++given_back; }
+  void deliver_until(const std::function<bool()>& over) override {
+    bring();
+    over();
+  }
+  void wake() override {}
+
+  std::function<void()> bring = [] {};
+  int given_back = 0;
+};
+
+/// A service whose own thread takes its requests, if `bring` is called in receive(); what is said
+/// to it runs inside.
 struct OnArrival {
   struct Hearer : skein::test::EchoService {
     std::string echo(const std::string& text) override {
@@ -72,7 +88,7 @@ struct OnArrival {
     std::function<void(const std::string&)> inside;
   };
 
-  explicit OnArrival(CallThread thread = CallThread::Caller) {
+  OnArrival() {
     hearer->inside = [this](const std::string& text) { heard += text; };
     rpc::Service::Options options;
     options.thread = thread;
@@ -80,9 +96,10 @@ struct OnArrival {
                                              executor, clock, options);
   }
 
-  void show_quick_calls() {
-    for (int i = 0; i < 100; ++i) bring("");
-    executor.run_all();
+  /// On the service's own thread, while it waits for requests.
+  void receive(const std::string& text) {
+    requests->bring = [&] { bring(text); };
+    rpc::Reception(*service, requests).work_until([] { return false; });
   }
 
   void bring(const std::string& text) {
@@ -95,29 +112,14 @@ struct OnArrival {
     service->submit(invocation, [this] { return may_run; });
   }
 
+  const CallThread thread = GENERATE(CallThread::Own, CallThread::Caller);
+  const std::shared_ptr<Requests> requests = std::make_shared<Requests>();
   ManualClock clock;
   ManualExecutor executor;
   const std::shared_ptr<Hearer> hearer = std::make_shared<Hearer>();
   std::shared_ptr<rpc::Service> service;
   std::string heard;
   bool may_run = true;
-};
-
-/// Requests as a thread takes them that waits for them: `bring` says what comes while it does.
-struct Requests final : dds::CallerDelivery {
-  void lend() override {}
-  void take_back() override { ++given_back; }
-  void deliver_until(const std::function<bool()>& over) override {
-    ++waited;
-    bring();
-    ended = over();
-  }
-  void wake() override {}
-
-  std::function<void()> bring = [] {};
-  int waited = 0;
-  int given_back = 0;
-  bool ended = false;
 };
 
 bool never() { return false; }
@@ -197,90 +199,54 @@ TEST_CASE("a service that is to finish waits for each answer, and then refuses w
   CHECK_THROWS_AS(service->submit(invocation), NotSent);
 }
 
-TEST_CASE("a call that could run on arrival does not overtake one that waits") {
-  OnArrival on_arrival;
-  on_arrival.show_quick_calls();
-  on_arrival.hearer->inside = [&](const std::string& text) {
-    if (text == "1") on_arrival.bring("2");  // while the first has its turn
-    on_arrival.heard += text;
-  };
-  on_arrival.bring("1");
-  CHECK(on_arrival.heard == "1");
-  on_arrival.bring("3");
-  CHECK(on_arrival.heard == "1");
-  on_arrival.executor.run_all();
-  CHECK(on_arrival.heard == "123");
-  on_arrival.bring("4");
-  CHECK(on_arrival.heard == "1234");
-  on_arrival.may_run = false;
-  on_arrival.bring("5");
-  CHECK(on_arrival.heard == "1234");
-  on_arrival.executor.run_all();
-  CHECK(on_arrival.heard == "12345");
+TEST_CASE_METHOD(OnArrival, "a service's own thread runs a request where it takes it") {
+  bring("1");  // on another thread
+  CHECK(heard.empty());
+  executor.run_all();
+  CHECK(heard == "1");
+  receive("2");
+  CHECK(heard == "12");
+  CHECK(requests->given_back == 0);
+  may_run = false;
+  receive("3");
+  CHECK(heard == "12");
+  executor.run_all();
+  CHECK(heard == "123");
 }
 
-TEST_CASE(
-    "calls run on arrival after a hundred quick ones in a row, and no more after a long one") {
-  OnArrival on_arrival;
+TEST_CASE_METHOD(OnArrival, "a call that could run on arrival does not overtake one that waits") {
+  hearer->inside = [&](const std::string& text) {
+    if (text == "1") std::thread([this] { bring("2"); }).join();
+    heard += text;
+  };
+  receive("1");
+  CHECK(heard == "1");
+  receive("3");
+  CHECK(heard == "1");
+  executor.run_all();
+  CHECK(heard == "123");
+  receive("4");
+  CHECK(heard == "1234");
+}
+
+TEST_CASE_METHOD(OnArrival, "after a call of over a millisecond what has come meanwhile queues") {
   const auto runs_on_arrival = [&](Duration time) {
-    on_arrival.hearer->inside = [&on_arrival, time](const std::string& text) {
-      on_arrival.clock.advance(time);
-      on_arrival.heard += text;
+    hearer->inside = [this, time](const std::string& text) {
+      clock.advance(time);
+      heard += text;
     };
-    on_arrival.heard.clear();
-    on_arrival.bring("x");
-    const bool at_once = on_arrival.heard == "x";
-    on_arrival.executor.run_all();
-    CHECK(on_arrival.heard == "x");
+    heard.clear();
+    receive("x");
+    const bool at_once = heard == "x";
+    executor.run_all();
+    CHECK(heard == "x");
     return at_once;
   };
-  for (int i = 0; i < 99; ++i) CHECK_FALSE(runs_on_arrival(1ms));
-  CHECK_FALSE(runs_on_arrival(2ms));
-  for (int i = 0; i < 100; ++i) CHECK_FALSE(runs_on_arrival(1ms));
   CHECK(runs_on_arrival(1ms));
   CHECK(runs_on_arrival(2ms));
+  CHECK_FALSE(runs_on_arrival(2ms));
   CHECK_FALSE(runs_on_arrival(1ms));
-}
-
-TEST_CASE("a service's own thread takes requests while its calls are quick, and runs them there") {
-  OnArrival own(CallThread::Own);
-  const auto requests = std::make_shared<Requests>();
-  rpc::Reception reception(*own.service, requests);
-  reception.work_until(never);
-  CHECK(requests->waited == 0);
-  own.bring("1");
-  CHECK(own.heard.empty());
-  own.executor.run_all();
-  CHECK(own.heard == "1");
-  own.show_quick_calls();
-
-  requests->bring = [&] { own.bring("2"); };
-  reception.work_until(never);
-  CHECK(own.heard == "12");
-  CHECK_FALSE(requests->ended);
-  CHECK(requests->given_back == 0);
-
-  own.bring("3");  // on another thread
-  CHECK(own.heard == "12");
-  requests->bring = [&] { own.bring("4"); };
-  reception.work_until(never);
-  CHECK(own.heard == "12");
-  own.executor.run_all();
-  CHECK(own.heard == "1234");
-}
-
-TEST_CASE("a service's own thread leaves requests to others once a call has taken long") {
-  OnArrival own(CallThread::Own);
-  const auto requests = std::make_shared<Requests>();
-  rpc::Reception reception(*own.service, requests);
-  own.show_quick_calls();
-  own.hearer->inside = [&](const std::string&) { own.clock.advance(2ms); };
-  requests->bring = [&] { own.bring("long"); };
-  reception.work_until(never);
-  CHECK(requests->ended);
-  CHECK(requests->given_back == 1);
-  reception.work_until(never);
-  CHECK(requests->waited == 1);
+  CHECK(runs_on_arrival(1ms));
 }
 
 TEST_CASE("a stream, and a call that is answered later, never run where they arrive") {
@@ -301,16 +267,12 @@ TEST_CASE("a stream, and a call that is answered later, never run where they arr
     }
     service->submit(invocation, [] { return true; });
   };
-  for (int i = 0; i < 100; ++i) bring("note");
-  executor.run_all();
-  REQUIRE(service->is_quick());
   const auto requests = std::make_shared<Requests>();
   rpc::Reception reception(*service, requests);
   const std::string name = GENERATE("ask", "count_up");
   requests->bring = [&] { bring(name.c_str()); };
   reception.work_until(never);
-  CHECK(requests->waited == 1);
-  CHECK(requests->given_back == 1);
+  CHECK(requests->given_back == (name == "ask" ? 0 : 1));
   CHECK(executor.run_all() == 1);
 }
 

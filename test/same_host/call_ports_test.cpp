@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "skein/error.hpp"
+#include "test/same_host/ring_all_doorbells.hpp"
 #include "test/tools/eventually.hpp"
 
 using namespace skein;
@@ -108,11 +109,8 @@ void damage(const std::function<void(RingState& requests, RingState& replies)>& 
 }
 
 void damage_replies() {
-  damage([](RingState&, RingState& replies) {
-    replies.written = 12;
-    replies.reader_sleeps = 0;
-    futex_wake(replies.reader_sleeps);
-  });
+  damage([](RingState&, RingState& replies) { replies.written = 12; });
+  test::ring_all_doorbells();
 }
 
 /// KiB of the greatest mapping of memory that this process shares.

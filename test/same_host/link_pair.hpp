@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/system/abstract_socket.hpp"
+#include "same_host/doorbell.hpp"
 #include "same_host/link.hpp"
 
 namespace skein::test {
@@ -16,8 +17,9 @@ struct LinkPair {
   LinkPair() {
     auto memory = same_host::SharedMemory::make(same_host::Link::kMemory);
     auto theirs = same_host::SharedMemory::map(memory.take_descriptor(), same_host::Link::kMemory);
-    server = end(same_host::Link::Side::Provider, std::move(memory));
-    client = end(same_host::Link::Side::Client, std::move(theirs));
+    auto [servers, clients] = doorbells();
+    server = end(same_host::Link::Side::Provider, std::move(memory), std::move(servers));
+    client = end(same_host::Link::Side::Client, std::move(theirs), std::move(clients));
   }
 
   // Requests and answers are of a byte. What is taken has to be there.
@@ -26,15 +28,27 @@ struct LinkPair {
   void take_request() const { take(*server); }
   void take_answer() const { take(*client); }
 
+  /// Of both sides.
+  using Doorbells = same_host::Link::DoorbellPair;
+  static std::pair<Doorbells, Doorbells> doorbells() {
+    const auto copy = [](const FileDescriptor& of) { return FileDescriptor(::dup(of.get())); };
+    FileDescriptor one = same_host::make_doorbell();
+    FileDescriptor other = same_host::make_doorbell();
+    FileDescriptor of_one = copy(one);
+    FileDescriptor of_other = copy(other);
+    return {Doorbells{std::move(one), std::move(of_other)},
+            Doorbells{std::move(other), std::move(of_one)}};
+  }
+
   std::shared_ptr<same_host::Link> server;
   std::shared_ptr<same_host::Link> client;
 
  private:
   static std::shared_ptr<same_host::Link> end(same_host::Link::Side side,
-                                              same_host::SharedMemory memory) {
+                                              same_host::SharedMemory memory, Doorbells doorbells) {
     return std::make_shared<same_host::Link>(
         side, std::make_shared<const FileDescriptor>(local_socket()), std::move(memory),
-        Guid::random(), Guid::random(), [] {});
+        std::move(doorbells), Guid::random(), Guid::random(), [] {});
   }
   static void send(same_host::Link& from) {
     REQUIRE(from.send(std::as_bytes(std::span("1", 1)), std::chrono::hours(1)) ==

@@ -50,7 +50,7 @@ struct Ends {
     REQUIRE(ftruncate(memory.get(), static_cast<off_t>(size)) == 0);
     REQUIRE(fcntl(memory.get(), F_ADD_SEALS, seals) == 0);
     const std::uint32_t packet[] = {place, generation};
-    REQUIRE(pass(client->get(), std::as_bytes(std::span(packet)), memory.get()));
+    REQUIRE(pass(client->get(), std::as_bytes(std::span(packet)), {memory.get()}));
   }
 
   LoanNote lend(const std::shared_ptr<LoanMemory>& memory, std::size_t position = 0) {
@@ -165,7 +165,7 @@ TEST_CASE("a provider that was killed reads nothing any more") {
     int ends[2] = {-1, -1};
     if (socketpair(AF_UNIX, SOCK_SEQPACKET, 0, ends) != 0) _exit(1);
     const char packet = 'x';
-    if (!pass(others.get(), std::as_bytes(std::span(&packet, 1)), ends[0])) _exit(1);
+    if (!pass(others.get(), std::as_bytes(std::span(&packet, 1)), {ends[0]})) _exit(1);
     Borrower borrower(std::make_shared<const FileDescriptor>(ends[1]), shared, nullptr);
     LoanNote note;
     if (recv(others.get(), &note, sizeof note, 0) != sizeof note) _exit(1);
@@ -175,7 +175,8 @@ TEST_CASE("a provider that was killed reads nothing any more") {
   char packet = 0;
   HandedOver handed;
   REQUIRE(eventually([&] {
-    return receive_passed(mine.get(), std::as_writable_bytes(std::span(&packet, 1)), handed);
+    return receive_passed(mine.get(), std::as_writable_bytes(std::span(&packet, 1)),
+                          std::span(&handed, 1));
   }));
   Lender lender({std::make_shared<const FileDescriptor>(std::move(handed)), shared, counts,
                  [] { return false; }, [](const LoanNote&) {}});
@@ -344,7 +345,7 @@ TEST_CASE("memory that must not be read, or cannot be, is not read, and its call
   SECTION("that is empty") { ends.give(0, 1, 0, kSeals); }
   SECTION("that did not come") {
     const std::uint32_t packet[] = {0, 1};
-    REQUIRE(pass(ends.client->get(), std::as_bytes(std::span(packet)), -1));
+    REQUIRE(pass(ends.client->get(), std::as_bytes(std::span(packet)), {}));
   }
   SECTION("that is a pipe") {
     int pipe_ends[2];
@@ -352,7 +353,7 @@ TEST_CASE("memory that must not be read, or cannot be, is not read, and its call
     const FileDescriptor one(pipe_ends[0]);
     const FileDescriptor other(pipe_ends[1]);
     const std::uint32_t packet[] = {0, 1};
-    REQUIRE(pass(ends.client->get(), std::as_bytes(std::span(packet)), one.get()));
+    REQUIRE(pass(ends.client->get(), std::as_bytes(std::span(packet)), {one.get()}));
   }
   CHECK(cannot_be_read(ends.borrower->borrow(ending_with(note))));
   CHECK(ends.counts->reading[0] == 0);

@@ -23,6 +23,8 @@
 #include <vector>
 
 #include "core/system/abstract_socket.hpp"
+#include "same_host/doorbell.hpp"
+#include "same_host/pass_descriptor.hpp"
 #include "skein/error.hpp"
 #include "test/tools/eventually.hpp"
 #include "test/tools/lingering_connection.hpp"
@@ -93,7 +95,7 @@ FileDescriptor stranger(const Guid& provider) {
 
 /// What a client says first.
 std::array<char, 24> hello_of(const Guid& client) {
-  std::array<char, 24> hello{"skein3"};
+  std::array<char, 24> hello{"skein4"};
   std::memcpy(hello.data() + 8, client.bytes.data(), client.bytes.size());
   return hello;
 }
@@ -104,6 +106,8 @@ class Forked {
  public:
   template <class Action>
   explicit Forked(Action action) {
+    // Tests before have threads left that close what they were handed.
+    REQUIRE(eventually([] { return test::threads_named("skein-closing").empty(); }));
     REQUIRE(pipe(go_) == 0);
     pid_ = fork();
     REQUIRE(pid_ >= 0);
@@ -294,7 +298,8 @@ TEST_CASE("a process has its share of the connections, and the log tells once wh
     const FileDescriptor socket = stranger(provider);
     const auto hello = hello_of(Guid::random());
     char answer[128] = {};
-    send(socket.get(), hello.data(), hello.size(), MSG_NOSIGNAL);
+    const FileDescriptor doorbell = make_doorbell();
+    pass(socket.get(), std::as_bytes(std::span(hello)), {doorbell.get()});
     pollfd answered{socket.get(), POLLIN, 0};
     poll(&answered, 1, 20'000);
     return recv(socket.get(), answer, sizeof answer, 0) == sizeof answer && answer[24] == 0 ? 0 : 1;
@@ -394,6 +399,12 @@ TEST_CASE("what a client hands over is closed by a thread that nobody waits for"
   {
     const FileDescriptor socket = stranger(host.provider);
     REQUIRE(with_hello.hand_over(socket.get(), std::string(hello.data(), hello.size())));
+    REQUIRE(eventually([&] { return host.meeting.counters().refused == 1; }));  // no doorbell
+  }
+  {
+    const FileDescriptor socket = stranger(host.provider);
+    const FileDescriptor doorbell = make_doorbell();
+    REQUIRE(pass(socket.get(), std::as_bytes(std::span(hello)), {doorbell.get()}));
     REQUIRE(eventually([&] { return host.guest(0) != nullptr; }));
     REQUIRE(unread.hand_over(socket.get()));
   }
@@ -591,7 +602,7 @@ TEST_CASE("a provider that hands over what can be taken away again is refused") 
     char packet[128];
     eventually([&] { return recv(accepted.get(), packet, sizeof packet, MSG_DONTWAIT) > 0; });
     std::memset(packet, 0, sizeof packet);
-    std::strcpy(packet, "skein3");
+    std::strcpy(packet, "skein4");
     std::memcpy(packet + 8, provider.bytes.data(), provider.bytes.size());
     iovec content{packet, sizeof packet};
     alignas(cmsghdr) char control[CMSG_SPACE(sizeof number)] = {};

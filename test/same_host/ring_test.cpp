@@ -51,14 +51,16 @@ bool equal(std::span<const std::byte> one, std::span<const std::byte> other) {
 bool take_one(RingReader& reader, Bytes& content, Instant deadline) {
   while (!reader.take(content)) {
     if (std::chrono::steady_clock::now() >= deadline) return false;
-    if (!reader.prepare_to_sleep()) continue;
-    futex_wait(reader.word(), 1, deadline);
-    reader.stay_awake();
+    if (!reader.prepare_to_sleep(RingReader::Who::Caller)) continue;
+    futex_wait(reader.word(RingReader::Who::Caller), 1, deadline);
+    reader.stay_awake(RingReader::Who::Caller);
   }
   return true;
 }
 
 bool never() { return false; }
+
+const FileDescriptor kNoDoorbell;
 
 Instant soon() { return std::chrono::steady_clock::now() + 20s; }
 
@@ -66,7 +68,7 @@ Instant soon() { return std::chrono::steady_clock::now() + 20s; }
 
 TEST_CASE("messages of every size arrive whole and in order, also those longer than the ring") {
   Memory memory(GENERATE(4096u, 65'536u));
-  RingWriter writer(memory.place());
+  RingWriter writer(memory.place(), kNoDoorbell);
   RingReader reader(memory.place(), kLargest);
   Bytes taken;
   std::size_t seed = 0;
@@ -93,7 +95,7 @@ TEST_CASE("a reader that sleeps on the writer's core is woken when it has much t
   constexpr std::size_t kCapacity = 256 << 10;
   const test::OneCore one_core;
   Memory memory(kCapacity);
-  RingWriter writer(memory.place());
+  RingWriter writer(memory.place(), kNoDoorbell);
   RingReader reader(memory.place(), kSize);
   const auto sent = message(kSize, 1);
   Bytes taken;
@@ -109,7 +111,7 @@ TEST_CASE("a reader that sleeps on the writer's core is woken when it has much t
 
 TEST_CASE("a full ring takes no more until the reader has made room") {
   Memory memory(4096);
-  RingWriter writer(memory.place());
+  RingWriter writer(memory.place(), kNoDoorbell);
   RingReader reader(memory.place(), kLargest);
   std::size_t sent = 0;
   RingWriter::Part rest{};
@@ -132,7 +134,7 @@ TEST_CASE("a full ring takes no more until the reader has made room") {
 
 TEST_CASE("a reader that always takes something, but never enough, puts off no writer's end") {
   Memory memory(4096);
-  RingWriter writer(memory.place());
+  RingWriter writer(memory.place(), kNoDoorbell);
   const auto content = message(8000, 1);
   std::atomic<bool> reading = true;
   std::thread reader([&] {
@@ -153,7 +155,7 @@ TEST_CASE("a reader that always takes something, but never enough, puts off no w
 
 TEST_CASE("a message that its writer gave up is passed over") {
   Memory memory(4096);
-  RingWriter writer(memory.place());
+  RingWriter writer(memory.place(), kNoDoorbell);
   RingReader reader(memory.place(), kLargest);
   const auto given_up = message(10'000, 1);
   RingWriter::Part part{given_up};
@@ -170,7 +172,7 @@ TEST_CASE("a message that its writer gave up is passed over") {
 TEST_CASE(
     "the kernel is asked once to wake a reader that sleeps, and never for one that is awake") {
   Memory memory(4096);
-  RingWriter writer(memory.place());
+  RingWriter writer(memory.place(), kNoDoorbell);
   RingReader reader(memory.place(), kLargest);
   Bytes taken;
   const auto put = [&] {
@@ -196,7 +198,7 @@ TEST_CASE(
 TEST_CASE("a ring that is empty is used from its beginning again: small messages touch few pages") {
   constexpr std::size_t kPage = 4096 / sizeof(std::uint64_t);
   Memory memory(256 << 10);
-  RingWriter writer(memory.place());
+  RingWriter writer(memory.place(), kNoDoorbell);
   RingReader reader(memory.place(), kLargest);
   const auto content = message(100, 1);
   Bytes taken;
@@ -236,7 +238,7 @@ TEST_CASE("in every order of steps nobody sleeps while there is something to do"
   const auto seed = GENERATE(range(0u, 50u));
   std::mt19937 random(seed);
   Memory memory(4096);
-  RingWriter writer(memory.place());
+  RingWriter writer(memory.place(), kNoDoorbell);
   RingReader reader(memory.place(), kLargest);
   std::deque<std::vector<std::byte>> expected;
   std::vector<std::byte> sending;
@@ -278,7 +280,7 @@ TEST_CASE("in every order of steps nobody sleeps while there is something to do"
 
 TEST_CASE("what is damaged is named, and nothing outside the ring is touched") {
   Memory memory(4096);
-  RingWriter writer(memory.place());
+  RingWriter writer(memory.place(), kNoDoorbell);
   RingReader reader(memory.place(), 1000);
   Bytes taken;
   const auto refuses = [&](const std::string& why) {
@@ -339,7 +341,7 @@ TEST_CASE("whatever a hostile peer writes, a reader and a writer end, inside the
   std::size_t whole = 0;
   for (int round = 0; round < 20'000; ++round) {
     Memory memory(512);
-    RingWriter writer(memory.place());
+    RingWriter writer(memory.place(), kNoDoorbell);
     RingReader reader(memory.place(), 1000);
     Bytes taken;
     try {
@@ -368,7 +370,7 @@ TEST_CASE("two threads that both sleep when they must lose nothing") {
   Memory memory(4096);
   constexpr std::size_t kMessages = 20'000;
   std::thread sender([&] {
-    RingWriter writer(memory.place());
+    RingWriter writer(memory.place(), kNoDoorbell);
     std::mt19937 random(1);
     for (std::size_t i = 0; i < kMessages; ++i) {
       writer.write({message(random() % (i % 100 == 0 ? 20'000 : 300), i)}, 20s, never);
@@ -399,14 +401,14 @@ TEST_CASE("a process answers another one through two rings, and nobody's sleep i
   if (child == 0) {
     const auto mapped = SharedMemory::map(FileDescriptor(dup(made.descriptor())), made.size());
     RingReader requests(place(mapped, 0), kLargest);
-    RingWriter replies(place(mapped, 1));
+    RingWriter replies(place(mapped, 1), kNoDoorbell);
     Bytes taken;
     for (std::size_t i = 0; i < kMessages; ++i) {
       if (!take_one(requests, taken, soon()) || !replies.write({taken}, 20s, never)) _exit(1);
     }
     _exit(0);
   }
-  RingWriter requests(place(made, 0));
+  RingWriter requests(place(made, 0), kNoDoorbell);
   RingReader replies(place(made, 1), kLargest);
   std::size_t right = 0;
   Bytes taken;

@@ -29,6 +29,10 @@ class Answers {
   /// earlier where another thread takes them.
   virtual void take_until(const std::atomic<bool>& finished) = 0;
   virtual void wake() = 0;
+  /// A call begins; its thread waits for the answer at once if it is `blocking`.
+  virtual void begin(bool blocking) = 0;
+  /// As many as have begun: it has ended.
+  virtual void end() = 0;
   /// A call's end is awaited otherwise: until as many leave(), a thread that never waits for one
   /// takes them, and nobody who begins to wait does.
   virtual void attend() = 0;
@@ -63,7 +67,7 @@ class PendingCall : public std::enable_shared_from_this<PendingCall> {
   bool finished() const;
 
   /// Set by the transport, once, before the request leaves.
-  void set_answers(std::shared_ptr<Answers> answers);
+  void set_answers(const std::shared_ptr<Answers>& answers);
 
   /// Blocks until finished. The transport guarantees this by the deadline.
   void wait() const;

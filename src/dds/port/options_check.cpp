@@ -74,7 +74,7 @@ void check_domain(const ParticipantOptions& options) {
 void check_options(const ParticipantOptions& options) {
   check_domain(options);
   const auto addresses = interface_addresses(options.network);
-  AllowedSources(options.network.allowed_sources);
+  static_cast<void>(AllowedSources(options.network.allowed_sources));
   for (const std::string& peer : options.network.peers) {
     if (!is_host_name(peer)) {
       throw InvalidArgument("peer '" + peer + "' is neither an address nor a host's name");

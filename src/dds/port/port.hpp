@@ -155,9 +155,11 @@ struct ReceiveCounters {
 class CallerDelivery {
  public:
   virtual ~CallerDelivery() = default;
-  /// What comes next is for who will call deliver_until(): the reader's thread leaves it alone for
-  /// a while.
+  /// What comes next is for who will call deliver_until(): the reader's thread leaves it alone.
   virtual void lend() = 0;
+  /// It is so for a while only: unless somebody calls lend() again within 20 to 40 ms, the reader's
+  /// thread takes it back.
+  virtual void pause() = 0;
   /// What comes next is for the reader's thread.
   virtual void take_back() = 0;
   /// Calls the reader's listener on this thread as samples come, until `over`, which wake() makes

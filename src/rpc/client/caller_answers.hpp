@@ -16,19 +16,22 @@ class CallerAnswers final : public Answers {
   explicit CallerAnswers(std::shared_ptr<dds::CallerDelivery> delivery)
       : delivery_(std::move(delivery)) {}
 
-  /// The answer to what is sent next is waited for at once: the reader's thread need not wake up.
-  void expect() {
-    if (attended_ == 0) delivery_->lend();
-  }
   /// The reader's thread takes what comes until somebody waits again.
   void hand_over() { delivery_->take_back(); }
 
+  void begin(bool blocking) override {
+    if (calls_++ == 0 && blocking) expect();
+  }
+  void end() override {
+    if (--calls_ == 0) delivery_->take_back();
+  }
   void take_until(const std::atomic<bool>& finished) override {
     if (attended_ != 0 || taken_.exchange(true)) return;
-    delivery_->lend();
-    if (attended_ != 0) delivery_->take_back();
+    expect();
     delivery_->deliver_until([&finished] { return finished.load(); });
     taken_ = false;
+    // Who has more calls under way mostly waits for the next one soon.
+    calls_ == 0 ? delivery_->take_back() : delivery_->pause();
   }
   void wake() override { delivery_->wake(); }
   void attend() override {
@@ -38,7 +41,15 @@ class CallerAnswers final : public Answers {
   void leave() override { --attended_; }
 
  private:
+  // The reader's thread need not wake up for what comes, until all calls have ended.
+  void expect() {
+    if (attended_ != 0) return;
+    delivery_->lend();
+    if (attended_ != 0) delivery_->take_back();
+  }
+
   const std::shared_ptr<dds::CallerDelivery> delivery_;
+  std::atomic<int> calls_{0};
   std::atomic<int> attended_{0};
   std::atomic<bool> taken_{false};  // by a thread that waits
 };

@@ -152,6 +152,7 @@ void DdsChannel::State::retire(const std::string& how, std::shared_ptr<DdsChanne
   if (phase != Phase::Open || retiring) return;
   retiring = true;
   lost_how = how;
+  if (answers) answers->hand_over();
   channel = std::move(itself);
   part_later();
 }

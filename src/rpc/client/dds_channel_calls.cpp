@@ -68,6 +68,7 @@ DdsChannel::State::Entered DdsChannel::State::enter(const std::shared_ptr<Pendin
     throw Unavailable("no connection to " + options.peer +
                       ": it was disconnected, or the entity that had connected has ended");
   if (entries.size() >= options.calls_in_flight) {
+    if (answers) answers->hand_over();  // some of them may have come
     throw Overloaded(std::to_string(options.calls_in_flight) + " calls to " + options.peer +
                      " already wait for their answers; the call was not sent");
   }
@@ -85,17 +86,11 @@ DdsChannel::State::Entered DdsChannel::State::enter(const std::shared_ptr<Pendin
           if (const auto self = state.lock()) self->grant(number, count);
         });
   }
-  if (answers && !call->operation().oneway) await_answer(*call);
+  if (answers && !call->operation().oneway) call->set_answers(answers);
   Entered entered{number, requests};
   lock.unlock();
   if (outdated != 0) clock.cancel(outdated);  // unlocked: it may be running
   return entered;
-}
-
-// Under the lock.
-void DdsChannel::State::await_answer(PendingCall& call) const {
-  if (call.blocking() && entries.size() == 1) answers->expect();
-  call.set_answers(answers);
 }
 
 // Before a request waits for room. The other side may wait, too, until somebody has taken answers

@@ -101,7 +101,6 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
   void start_here(const std::shared_ptr<PendingCall>& call, const void* in);
   void call(const OperationInfo& operation, const void* in, void* out, const CallTime& time);
   Entered enter(const std::shared_ptr<PendingCall>& call);
-  void await_answer(PendingCall& call) const;
   void on_full();
   TimerId look_at(Instant deadline);
   void expire_due();

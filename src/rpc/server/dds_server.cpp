@@ -185,8 +185,7 @@ void DdsServer::State::accept(const dds::Sample& sample, const wire::RequestHead
   if (options.on_load) options.on_load();
   try {
     std::function<bool()> may_run;
-    if (options.may_run && sample.owner)
-      may_run = [owner = sample.owner] { return owner->may_take_long(); };
+    if (sample.owner) may_run = [owner = sample.owner] { return owner->may_take_long(); };
     service->submit(invocation, may_run);
   } catch (...) {
     forget(*invocation);
@@ -272,13 +271,9 @@ DdsServer::DdsServer(dds::Participant& participant, Executor& control, Clock& cl
 }
 
 DdsServer::~DdsServer() {
-  // Clients learn of the reader's end before a call that is told to end could answer them. Where a
-  // call runs on the reader's thread, the reader ends after it.
-  const bool on_readers_thread =
-      state_->options.may_run && state_->service->thread() == CallThread::Caller;
-  if (on_readers_thread) state_->service->close();
+  // Clients learn of the reader's end before a call that is told to end could answer them.
   state_->requests.reset();
-  if (!on_readers_thread) state_->service->close();
+  state_->service->close();
   std::vector<TimerId> timers;
   {
     // The writers end here, where their listeners can be waited for: a listener that still runs may

@@ -45,8 +45,6 @@ class DdsServer {
     bool foreign_clients = true;
     /// What a client that states no deadline gets.
     Duration default_deadline = std::chrono::seconds(60);
-    /// Calls may run on the thread that brings them, by the rule of Service::submit().
-    bool may_run = false;
     /// Called when a request has come, or has been answered, on the thread that sees it:
     /// Counters::active has changed. May be empty; must return soon.
     std::function<void()> on_load{};

@@ -11,13 +11,14 @@ namespace skein::rpc {
 
 class Service;
 
-/// Requests are taken by the service's own thread while it has nothing else to do, and run right
-/// there, which saves their way to it: as long as its calls have been quick (Service::is_quick()).
-/// Else another thread takes them, so that a long call keeps no cancellation waiting.
+/// While the service's own thread has nothing else to do, it takes the requests itself, and runs
+/// them right there, which saves their way to it. While a call takes long, another thread takes
+/// what comes, so that cancellations are heard; for a stream, whose reader grants room for its
+/// results, from the beginning.
 class Reception final : public IdleWork {
  public:
   /// `service` has one thread, whose executor it outlives; `requests` brings its requests.
-  Reception(const Service& service, std::shared_ptr<dds::CallerDelivery> requests)
+  Reception(Service& service, std::shared_ptr<dds::CallerDelivery> requests)
       : service_(service), requests_(std::move(requests)) {}
 
   void work_until(const std::function<bool()>& over) override;
@@ -27,7 +28,7 @@ class Reception final : public IdleWork {
   static bool is_of(const Service& service) noexcept;
 
  private:
-  const Service& service_;
+  Service& service_;
   const std::shared_ptr<dds::CallerDelivery> requests_;
 };
 

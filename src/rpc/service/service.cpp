@@ -15,10 +15,7 @@
 namespace skein::rpc {
 namespace {
 
-// Before so many calls have shown that they are quick, none runs on the thread that brings it: a
-// long one would keep other requests and cancellations waiting there.
-constexpr std::chrono::milliseconds kQuick{1};
-constexpr int kQuickInARow = 100;
+constexpr std::chrono::milliseconds kLong{1};
 
 }  // namespace
 
@@ -214,8 +211,7 @@ void Service::submit(const std::shared_ptr<Invocation>& invocation,
   OperationMeter::count(meter.received);
   invocation->arrived = clock_.now();
   note_begin(*invocation->operation, *invocation);
-  const bool takes_long = invocation->operation->stream || is_deferred(*invocation->operation);
-  if (takes_long && options_.thread == CallThread::Own) quick_ = 0;
+  if (invocation->operation->stream) stream_submitted_ = true;
   std::optional<Turn> turn;
   if (may_run && runs_on_arrival(*invocation->operation)) {
     turn.emplace(*this, Instant::min());  // who would have to wait for it queues
@@ -225,6 +221,8 @@ void Service::submit(const std::shared_ptr<Invocation>& invocation,
     refuse_self_wait(*invocation);
     here = turn && turn->came() && may_run();
     if (!here) enqueue(invocation);
+    // Again: the service's own thread may have left for something else meanwhile.
+    if (invocation->operation->stream) stream_submitted_ = true;
   } catch (const Error&) {
     OperationMeter::count(meter.refused);
     note_end(*invocation->operation, *invocation, std::current_exception());
@@ -235,22 +233,11 @@ void Service::submit(const std::shared_ptr<Invocation>& invocation,
   if (here) [&]() noexcept { execute_in_turn(invocation, true, invocation->arrived); }();
 }
 
-// What waits in the queue has come earlier, from the same client perhaps.
+// What waits in the queue has come earlier, from the same client perhaps. After a long call
+// everything queues first that has come meanwhile: some of it may be cancelled by what comes next.
 bool Service::runs_on_arrival(const OperationInfo& operation) const {
-  return (options_.thread == CallThread::Caller || Reception::is_of(*this)) && !operation.stream &&
-         !is_deferred(operation) && is_quick() && accepted_ == 0;
-}
-
-bool Service::is_quick() const noexcept {
-  return quick_.load(std::memory_order_relaxed) >= kQuickInARow;
-}
-
-void Service::note_time(const Invocation& invocation) {
-  if (invocation.operation->stream) return;
-  const int before = quick_.load(std::memory_order_relaxed);
-  const bool quick = invocation.ended - invocation.begun <= kQuick;
-  const int now = quick ? std::min(before + 1, kQuickInARow) : 0;
-  if (now != before) quick_.store(now, std::memory_order_relaxed);
+  return Reception::is_of(*this) && !operation.stream && !is_deferred(operation) &&
+         accepted_ == 0 && !latest_was_long_.load(std::memory_order_relaxed);
 }
 
 void Service::note_begin(const OperationInfo& operation, const Invocation& frame) {
@@ -492,7 +479,10 @@ void Service::execute_now(Invocation& invocation) {
     error = std::current_exception();
     result = nullptr;
   }
-  note_time(invocation);
+  if (!stream) {
+    const bool was_long = invocation.ended - invocation.begun > kLong;
+    if (was_long != latest_was_long_) latest_was_long_ = was_long;
+  }
   answer(invocation, result, std::move(error));
 }
 

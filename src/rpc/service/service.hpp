@@ -133,16 +133,14 @@ class Service : public std::enable_shared_from_this<Service> {
 
   /// Queues the invocation; its respond() tells the outcome. Throws Overloaded where its connection
   /// has no room left in the queue, and Unavailable where the call chain shows that it would wait
-  /// for itself; respond() is not called then. Where this thread may run the implementation,
-  /// `may_run`, which is asked right before it, says so: calls that are no streams run on it with
-  /// CallThread::Caller, and on the service's own thread (Reception), while is_quick() and where
-  /// none waits before them; they have ended when it returns.
+  /// for itself; respond() is not called then. On the service's own thread (Reception) a call runs
+  /// at once, and has ended when it returns, if it is neither a stream nor answered later, none
+  /// waits before it, and `may_run` agrees, which is asked right before it.
   void submit(const std::shared_ptr<Invocation>& invocation,
               const std::function<bool()>& may_run = {});
 
-  /// Whether the last hundred calls took no longer than a millisecond each. With CallThread::Own
-  /// streams and calls that are answered later take long.
-  bool is_quick() const noexcept;
+  /// Whether a stream has been submitted since this was asked before.
+  bool forget_stream() noexcept { return stream_submitted_ && stream_submitted_.exchange(false); }
 
   /// With CallThread::Caller: runs the operation on the calling thread, once those before it have
   /// ended. The outcome is in `out` or thrown: TimedOut, too, where its turn or its end came too
@@ -197,7 +195,6 @@ class Service : public std::enable_shared_from_this<Service> {
   void execute_deferred(const std::shared_ptr<Invocation>& invocation);
   bool is_deferred(const OperationInfo& operation) const noexcept;
   bool runs_on_arrival(const OperationInfo& operation) const;
-  void note_time(const Invocation& invocation);
   bool may_owe(const Guid& connection) const;
   bool owe(Deferred& deferred, const Guid& connection);
   void settle(Deferred& deferred, const Guid& connection);
@@ -234,7 +231,8 @@ class Service : public std::enable_shared_from_this<Service> {
   std::condition_variable turn_ended_;
   bool turn_taken_ = false;
   std::atomic<std::size_t> turns_awaited_{0};
-  std::atomic<int> quick_{0};  // calls in a row, as far as it matters
+  std::atomic<bool> latest_was_long_{false};  // of those that are no streams
+  std::atomic<bool> stream_submitted_{false};
   mutable std::mutex mutex_;
   mutable std::condition_variable less_to_do_;  // once it is leaving
   Running* running_ = nullptr;  // the first of a list that lies on the stacks of those who run

@@ -23,6 +23,7 @@
 #include "core/system/abstract_socket.hpp"
 #include "frames.idl.hpp"
 #include "rpc/wire/wire.hpp"
+#include "same_host/doorbell.hpp"
 #include "same_host/link.hpp"
 #include "same_host/pass_descriptor.hpp"
 #include "skein/loaned.hpp"
@@ -56,6 +57,13 @@ class Attacker {
  public:
   /// `out`: the ring that it writes to, 0 for requests and 1 for replies.
   Attacker(std::uint64_t seed, int out) : random_(seed), out_(out) {}
+
+  /// What the other side is handed as a doorbell: mostly one, at times the test's memory or
+  /// nothing.
+  int doorbell(const FileDescriptor& otherwise) {
+    if (!chance(8)) return doorbell_.get();
+    return chance(2) ? otherwise.get() : -1;
+  }
 
  protected:
   bool chance(std::uint64_t one_in) { return random_() % one_in == 0; }
@@ -115,7 +123,8 @@ class Attacker {
       default:
         scribble(which);
     }
-    same_host::futex_wake(ring.reader_sleeps);
+    if (chance(2)) ring.caller_reads = static_cast<std::uint32_t>(random_() % 2);
+    same_host::ring(doorbell_);
     same_host::futex_wake(ring.caller_sleeps);
     same_host::futex_wake(ring.writer_sleeps);
   }
@@ -161,11 +170,11 @@ class Attacker {
   static void look_alive() { sched_yield(); }
 
  private:
-  static void wake_readers(RingState& ring) {
-    for (same_host::Word* word : {&ring.reader_sleeps, &ring.caller_sleeps}) {
-      *word = 0;
-      same_host::futex_wake(*word);
-    }
+  void wake_readers(RingState& ring) {
+    ring.reader_sleeps = 0;
+    same_host::ring(doorbell_);
+    ring.caller_sleeps = 0;
+    same_host::futex_wake(ring.caller_sleeps);
   }
   RingState& state(int which) { return reinterpret_cast<RingState*>(memory_)[which]; }
   std::byte* content(int which) {
@@ -179,6 +188,7 @@ class Attacker {
 
   std::mt19937_64 random_;
   const int out_;
+  const FileDescriptor doorbell_ = same_host::make_doorbell();
   std::byte* memory_ = nullptr;
   std::uint64_t written_ = 0;
 };
@@ -209,16 +219,23 @@ class HostileClient : Attacker {
   }
 
  private:
-  static FileDescriptor handed_over(const FileDescriptor& socket, const Guid& client) {
-    std::array<char, 24> hello{"skein3"};
+  FileDescriptor handed_over(const FileDescriptor& socket, const Guid& client) {
+    std::array<char, 24> hello{"skein4"};
     std::memcpy(hello.data() + 8, client.bytes.data(), client.bytes.size());
-    if (::send(socket.get(), hello.data(), hello.size(), MSG_NOSIGNAL) < 0) return {};
+    const int handed = doorbell(socket);
+    const auto packet = std::as_bytes(std::span(hello));
+    if (!(handed < 0 ? same_host::pass(socket.get(), packet, {})
+                     : same_host::pass(socket.get(), packet, {handed}))) {
+      return {};
+    }
     pollfd answered{socket.get(), POLLIN, 0};
     poll(&answered, 1, 20'000);
     std::array<std::byte, 128> answer{};
-    HandedOver descriptor;
-    same_host::receive_passed(socket.get(), answer, descriptor);
-    return descriptor;
+    std::array<HandedOver, 2> theirs;
+    same_host::receive_passed(socket.get(), answer, theirs);
+    // Closed here: a forked process has no thread to close it elsewhere.
+    const FileDescriptor others_doorbell(theirs[1].release());
+    return FileDescriptor(theirs[0].release());
   }
 
   static Bytes open_request(const Guid& client) {
@@ -249,8 +266,11 @@ class HostileClient : Attacker {
       if (ftruncate(memory.get(), static_cast<off_t>(size)) != 0) return;
       if (!chance(8)) fcntl(memory.get(), F_ADD_SEALS, seals);
       const std::array<std::uint32_t, 2> packet{place, generation};
-      same_host::pass(socket.get(), std::as_bytes(std::span(packet)),
-                      chance(8) ? -1 : memory.get());
+      if (chance(8)) {
+        same_host::pass(socket.get(), std::as_bytes(std::span(packet)), {});
+      } else {
+        same_host::pass(socket.get(), std::as_bytes(std::span(packet)), {memory.get()});
+      }
     }
     Bytes message;
     rpc::wire::begin_request(message, {client, number}, operation("study"));
@@ -318,12 +338,13 @@ class HostileProvider : Attacker {
   }
 
   bool answer(const FileDescriptor& socket, const FileDescriptor& descriptor) {
-    std::array<char, 128> packet{"skein3"};
+    std::array<char, 128> packet{"skein4"};
     std::memcpy(packet.data() + 8, provider_.bytes.data(), provider_.bytes.size());
     if (chance(16)) packet[random() % packet.size()] = static_cast<char>(random());
     iovec content{packet.data(), packet.size()};
-    const std::array<int, 2> handed{descriptor.get(), descriptor.get()};
-    const std::size_t size = sizeof(int) * (chance(8) ? 2 : 1);
+    const int bell = doorbell(descriptor);
+    const std::array<int, 3> handed{descriptor.get(), bell, descriptor.get()};
+    const std::size_t size = sizeof(int) * (bell < 0 ? 1 : chance(8) ? 3 : 2);
     alignas(cmsghdr) char control[CMSG_SPACE(sizeof handed)] = {};
     msghdr message{};
     message.msg_iov = &content;

@@ -20,6 +20,7 @@
 #include "skein/error.hpp"
 #include "test/connector/echo_pair.hpp"
 #include "test/connector/loopback_entity.hpp"
+#include "test/same_host/ring_all_doorbells.hpp"
 #include "test/tools/eventually.hpp"
 #include "test/tools/log.hpp"
 
@@ -74,17 +75,13 @@ std::uint64_t wake_ups_of(const std::string& name) {
   return wake_ups;
 }
 
-/// Calls until they run where they arrive: on the thread that takes requests, or on the service's
-/// own, which takes them itself then. On a busy machine some are not quick enough at first.
-bool runs_on_arrival(Echo::Proxy& echo, CallThread thread) {
+/// Calls until they run on the thread that takes them.
+bool runs_on_arrival(Echo::Proxy& echo) {
   return eventually([&] {
-    if (thread == CallThread::Caller) return echo.within(20s).echo("") == "skein-requests";
     constexpr int kCalls = 60;
     const std::uint64_t before = wake_ups_of("skein-requests");
     const auto begin = std::chrono::steady_clock::now();
-    for (int i = 0; i < kCalls; ++i) {
-      if (echo.within(20s).echo("") == "skein-requests") return false;
-    }
+    for (int i = 0; i < kCalls; ++i) echo.within(20s).echo("");
     // It stands by, and looks every 10 ms.
     const auto looks = (std::chrono::steady_clock::now() - begin) / 10ms;
     return wake_ups_of("skein-requests") < before + looks + kCalls / 4;
@@ -113,12 +110,11 @@ void damage_replies() {
     if (line.find("memfd:skein") == std::string::npos) continue;
     auto& replies = reinterpret_cast<same_host::RingState*>(std::stoull(line, nullptr, 16))[1];
     if (write(replies.written, std::uint64_t{12})) ++damaged;
-    for (auto* word : {&replies.reader_sleeps, &replies.caller_sleeps}) {
-      write(*word, std::uint32_t{0});
-      same_host::futex_wake(*word);
-    }
+    write(replies.caller_sleeps, std::uint32_t{0});
+    same_host::futex_wake(replies.caller_sleeps);
   }
   REQUIRE(damaged > 0);
+  ring_all_doorbells();
 }
 
 template <class Implementation = EchoService>
@@ -128,10 +124,10 @@ struct Pair : EchoPair<Implementation> {
                                  options) {}
 };
 
-/// Its calls run where they arrive: on either thread that may take requests.
+/// Its calls run where they arrive.
 template <class Implementation>
 struct OnArrival {
-  bool comes_to_be() { return runs_on_arrival(*pair.echo, thread); }
+  bool comes_to_be() { return runs_on_arrival(*pair.echo); }
 
   const CallThread thread = GENERATE(CallThread::Own, CallThread::Caller);
   Pair<Implementation> pair{{.thread = thread}};
@@ -175,17 +171,10 @@ TEST_CASE("a provider that only says that it is called through shared memory is 
   check_transport(*pair.client, "DDS", "no connection through shared memory: nobody offers one");
 }
 
-TEST_CASE(
-    "a call runs on the thread that takes it where the service says so and has shown that it is "
-    "quick, a stream never") {
-  const CallThread thread = GENERATE(CallThread::Own, CallThread::Caller);
-  Pair<Placed> pair({.thread = thread});
-  for (int i = 0; i < 100; ++i) CHECK(pair.echo->echo("") == "server");
-  // On a busy machine one of them took longer than a quick one may.
-  if (thread == CallThread::Caller)
-    CHECK(eventually([&] { return pair.echo->echo("") == "skein-requests"; }));
-  else
-    CHECK(pair.echo->echo("") == "server");
+TEST_CASE_METHOD(OnArrival<Placed>, "a service's own thread runs all its calls from elsewhere") {
+  CHECK(pair.echo->echo("") == "server");
+  REQUIRE(comes_to_be());
+  CHECK(pair.echo->echo("") == "server");
   auto stream = pair.echo->burst(1);
   const auto name = stream.next();
   REQUIRE(name);
@@ -198,10 +187,10 @@ TEST_CASE_METHOD(OnArrival<Placed>,
       pair.server->provide<LouderEcho>(std::make_shared<Placed>(), {.thread = thread});
   auto quick_echo = pair.client->connect<Echo>({.provider = quick_id});
   REQUIRE(comes_to_be());
-  REQUIRE(runs_on_arrival(quick_echo, thread));
+  REQUIRE(runs_on_arrival(quick_echo));
   auto call = pair.echo->within(60s).async_wait(600'000);
   REQUIRE(eventually([&] { return pair.service->inside == 1; }));
-  CHECK(runs_on_arrival(quick_echo, thread));
+  CHECK(runs_on_arrival(quick_echo));
   CHECK(pair.client->connect<Echo>({.provider = quick_id}).within(20s).echo("") != "");
   CHECK(pair.service->inside == 1);
   CHECK(transports(*pair.client) == std::vector<std::string>(2, "shared memory"));
@@ -243,7 +232,7 @@ TEST_CASE(
   first->next.emplace(one->connect<Echo>({.provider = second_id}));
   second->next.emplace(two->connect<Echo>({.provider = first_id}));
   auto echo = client->connect<Echo>({.provider = first_id});
-  for (auto* each : {&echo, &*first->next, &*second->next}) REQUIRE(runs_on_arrival(*each, thread));
+  for (auto* each : {&echo, &*first->next, &*second->next}) REQUIRE(runs_on_arrival(*each));
   CHECK_THROWS_WITH(echo.within(20s).echo("round"), Catch::Contains("would wait for itself"));
 }
 
@@ -261,7 +250,7 @@ TEST_CASE(
     "a call that does not return is left behind also where its thread had taken its request") {
   const Log log;
   Pair<Hanging> pair;
-  REQUIRE(runs_on_arrival(*pair.echo, CallThread::Own));
+  REQUIRE(runs_on_arrival(*pair.echo));
   auto call = pair.echo->within(60s).async_wait(0);
   REQUIRE(eventually([&] { return pair.service->inside == 1; }));
   pair.server->withdraw(pair.id);
