@@ -33,10 +33,10 @@ std::string answer(const Command& command, const std::string& rest) {
 }
 
 // A weak reference would depend on the linker: some settle it when they make the program.
-std::uint64_t allocations() {
-  void* const counter = dlsym(RTLD_DEFAULT, "skein_benchmark_allocations");
-  if (!counter) throw Skipped("allocations are not counted here");
-  return reinterpret_cast<std::uint64_t (*)()>(counter)();
+std::int64_t counted(const std::string& what) {
+  void* const counter = dlsym(RTLD_DEFAULT, "skein_benchmark_count");
+  if (!counter) throw Skipped(what + " are not counted here");
+  return reinterpret_cast<std::int64_t (*)(const char*)>(counter)(what.c_str());
 }
 
 // Not the switches that the scheduler orders: these depend on who else is there.
@@ -61,7 +61,7 @@ Commands known_to_all() {
           {"cpu", [](const std::string&) { return "cpu " + std::to_string(used_cpu_ns()); }},
           {"memory", [](const std::string&) { return std::to_string(memory_octets("Pss:")); }},
           {"resident", [](const std::string&) { return std::to_string(memory_octets("Rss:")); }},
-          {"allocations", [](const std::string&) { return std::to_string(allocations()); }},
+          {"counted", [](const std::string& what) { return std::to_string(counted(what)); }},
           {"sleeps", [](const std::string&) { return std::to_string(sleeps()); }}};
 }
 

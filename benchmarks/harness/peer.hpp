@@ -58,8 +58,7 @@ struct Client {
 /// Times are in ns. Every peer, server or client, also knows `place CORE` (-1: any; for all its
 /// threads), `cpu` (processor time that it has used, in ns), `memory` and `resident` (octets, see
 /// memory_octets()), `sleeps` (how often its threads have gone to sleep) and, where
-/// harness/allocation_counter.cpp is preloaded, `allocations` (blocks that it has taken from the
-/// heap).
+/// harness/work_counter.cpp is preloaded, `counted WHAT`.
 void run_client(const Client& client);
 
 /// A server's: says `ready`, obeys until its input ends.
