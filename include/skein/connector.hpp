@@ -11,20 +11,11 @@
 #include "skein/detail/service_reference.hpp"
 
 namespace skein::brokerless_discovery {
-class Broker;
-class LoadBoard;
 struct Query;
 }  // namespace skein::brokerless_discovery
-namespace skein::dds {
-class Participant;
-}
 namespace skein::discovery {
 struct ServiceDescription;
 }
-namespace skein::rpc {
-class CallJournal;
-class LocalDirectory;
-}  // namespace skein::rpc
 
 namespace skein {
 
@@ -111,18 +102,7 @@ struct Connected {
 /// Thread-safe. connect() blocks; do not call it from a DDS listener or from a timer's action.
 class Connector {
  public:
-  struct Parts {
-    dds::Participant& participant;
-    brokerless_discovery::Broker& broker;
-    const brokerless_discovery::LoadBoard& loads;
-    std::shared_ptr<rpc::LocalDirectory> directory;
-    Executor& control;
-    std::shared_ptr<Executor> continuations;
-    std::shared_ptr<Clock> clock;
-    std::chrono::microseconds spin{0};            ///< As EntityOptions::spin.
-    std::shared_ptr<rpc::CallJournal> journal{};  ///< May be null.
-    dds::Participant* same_host = nullptr;        ///< same_host::ClientPort; may be null.
-  };
+  struct Parts;
 
   /// The parts must exist until close() has returned.
   explicit Connector(const Parts& parts);
@@ -203,7 +183,7 @@ class Connector {
                                           const std::string& strategy,
                                           const connector::ProviderQuery& wanted) const;
 
-  Parts parts_;
+  std::shared_ptr<const Parts> parts_;
   std::shared_ptr<connector::Connections> connections_;
 };
 

@@ -15,6 +15,9 @@
 #include "skein/subscription.hpp"
 #include "skein/vendor.hpp"
 
+namespace skein::brokerless_discovery {
+class Broker;
+}
 namespace skein::introspection {
 struct ServiceStatistics;
 }

@@ -47,16 +47,7 @@ class Head {
     std::string host;  ///< As in its description.
   };
 
-  /// What a Head works with; all of it must outlive the Head.
-  struct Parts {
-    Connector& connector;
-    brokerless_discovery::Broker& broker;
-    std::shared_ptr<rpc::LocalDirectory> directory;
-    Clock& clock;
-    dds::Participant& participant;
-    Executor& control;
-    std::string entity;  ///< `system/name`
-  };
+  struct Parts;
 
   /// Throws InvalidArgument for an unknown strategy, for a history that cannot be read, and for a
   /// log that cannot be written.

@@ -9,11 +9,12 @@
 #include "brokerless_discovery/process_watch.hpp"
 #include "brokerless_discovery/versions.hpp"
 #include "connections.hpp"
+#include "connector_parts.hpp"
 #include "core/log.hpp"
 #include "core/system/interface_name.hpp"
 #include "failover_channel.hpp"
-#include "rpc/client/dds_channel.hpp"
 #include "rpc/client/local_channel.hpp"
+#include "rpc/client/remote_channel.hpp"
 #include "rpc/service/call_journal.hpp"
 #include "rpc/service/local_directory.hpp"
 #include "skein/discovery.idl.hpp"
@@ -78,7 +79,8 @@ const char* ending_of(brokerless_discovery::Departure departure) {
 }
 
 // The kernel and the Broker know of a provider's end, or of its silence, before DDS does.
-void follow(brokerless_discovery::Broker& broker, const std::shared_ptr<rpc::DdsChannel>& channel,
+void follow(brokerless_discovery::Broker& broker,
+            const std::shared_ptr<rpc::RemoteChannel>& channel,
             const ProviderConnection& connection) {
   using brokerless_discovery::Broker;
   auto registration = std::make_shared<Broker::Registration>(
@@ -160,14 +162,14 @@ std::string why_not_shared_memory(const Connector::Parts& parts,
 
 // Through shared memory where both sides have it; otherwise, and where the provider is not reached
 // in that way, over DDS. Who has answered there is not asked again.
-std::shared_ptr<rpc::DdsChannel> open_remote(const Connector::Parts& parts,
-                                             const ServiceDescription& provider,
-                                             rpc::DdsChannel::Options options) {
-  const rpc::DdsAddress address{provider.service, Guid{provider.provider},
-                                representation_of(provider)};
-  const auto open = [&](dds::Participant& participant, rpc::DdsChannel::Options how) {
-    return rpc::DdsChannel::open(participant, parts.control, parts.continuations, parts.clock,
-                                 address, std::move(how));
+std::shared_ptr<rpc::RemoteChannel> open_remote(const Connector::Parts& parts,
+                                                const ServiceDescription& provider,
+                                                rpc::RemoteChannel::Options options) {
+  const calls::Address address{provider.service, Guid{provider.provider},
+                               representation_of(provider)};
+  const auto open = [&](calls::ClientPort& port, rpc::RemoteChannel::Options how) {
+    return rpc::RemoteChannel::open(port, parts.control, parts.continuations, parts.clock, address,
+                                    std::move(how));
   };
   options.not_faster = why_not_shared_memory(parts, provider);
   if (options.not_faster.empty()) {
@@ -189,7 +191,7 @@ std::shared_ptr<rpc::DdsChannel> open_remote(const Connector::Parts& parts,
     }
     options.timeout -= std::min(options.timeout, parts.clock->now() - begin);
   }
-  return open(parts.participant, std::move(options));
+  return open(parts.dds, std::move(options));
 }
 
 ProviderConnection await_connection(const brokerless_discovery::Broker& broker, const Query& query,
@@ -206,11 +208,11 @@ ProviderConnection await_connection(const brokerless_discovery::Broker& broker, 
 }  // namespace
 
 Connector::Connector(const Parts& parts)
-    : parts_(parts), connections_(std::make_shared<Connections>()) {}
+    : parts_(std::make_shared<const Parts>(parts)), connections_(std::make_shared<Connections>()) {}
 
 void Connector::close() {
   connections_->close();
-  parts_.broker.end_waits();
+  parts_->broker.end_waits();
   connections_->await_openings();
 }
 
@@ -226,36 +228,36 @@ ProviderConnection Connector::open_connection(const ServiceDescription& provider
                                               const std::string& strategy, Duration timeout) const {
   const Connections::Opening opening(*connections_);
   const Guid id{provider.provider};
-  if (const auto service = parts_.directory->find(id)) {
+  if (const auto service = parts_->directory->find(id)) {
     ProviderConnection connection{
-        id, rpc::LocalChannel::open(service, parts_.clock, parts_.continuations, strategy,
-                                    parts_.journal)};
+        id, rpc::LocalChannel::open(service, parts_->clock, parts_->continuations, strategy,
+                                    parts_->journal)};
     connections_->add(connection.channel);
     return connection;
   }
-  rpc::DdsChannel::Options options;
+  rpc::RemoteChannel::Options options;
   options.strategy = strategy;
   options.peer = peer_name(provider);
   options.timeout = timeout;
-  options.spin = parts_.spin;
-  options.journal = parts_.journal;
-  options.stands = [&broker = parts_.broker, connections = connections_, id] {
+  options.spin = parts_->spin;
+  options.journal = parts_->journal;
+  options.stands = [&broker = parts_->broker, connections = connections_, id] {
     connections->refuse_if_closed();
     return broker.knows(id);
   };
   options.begun = [connections = connections_](const auto& channel) { connections->add(channel); };
-  const auto participant = parts_.broker.participant_of(id);
+  const auto participant = parts_->broker.participant_of(id);
   if (!participant) throw Unavailable(options.peer + " left before it was connected");
   options.participant = *participant;
-  auto channel = open_remote(parts_, provider, std::move(options));
+  auto channel = open_remote(*parts_, provider, std::move(options));
   ProviderConnection connection{id, channel};
-  follow(parts_.broker, channel, connection);
+  follow(parts_->broker, channel, connection);
   return connection;
 }
 
 Query Connector::query(const InterfaceInfo& interface, const ConnectOptions& options) const {
   Query query =
-      parts_.broker.query(options.name.empty() ? std::string(interface.name) : options.name);
+      parts_->broker.query(options.name.empty() ? std::string(interface.name) : options.name);
   query.client = &interface;
   query.provider = options.provider;
   query.constraints = options.constraints;
@@ -270,7 +272,7 @@ Query Connector::query(const InterfaceInfo& interface, const ConnectOptions& opt
 
 std::shared_ptr<Channel> Connector::open(const InterfaceInfo& interface,
                                          const ConnectOptions& options) {
-  const Instant deadline = deadline_of(options, *parts_.clock);
+  const Instant deadline = deadline_of(options, *parts_->clock);
   if (options.foreign) return open_foreign(interface, options);
   tell_useless_hedging(interface, options);
   const Connections::Opening opening(*connections_);
@@ -280,10 +282,10 @@ std::shared_ptr<Channel> Connector::open(const InterfaceInfo& interface,
     return connector.open_next(query, strategy, wanted);
   };
   const auto channel = std::make_shared<FailoverChannel>(
-      await_connection(parts_.broker, query, deadline, connect), connect, options.hedge_after);
+      await_connection(parts_->broker, query, deadline, connect), connect, options.hedge_after);
   connections_->add(channel);
   channel->attach(std::make_shared<brokerless_discovery::Broker::Registration>(
-      parts_.broker.observe([weak = std::weak_ptr(channel)](const Change&) {
+      parts_->broker.observe([weak = std::weak_ptr(channel)](const Change&) {
         if (const auto follows = weak.lock()) follows->on_change();
       })));
   return channel;
@@ -292,11 +294,11 @@ std::shared_ptr<Channel> Connector::open(const InterfaceInfo& interface,
 std::vector<Connector::Opened> Connector::open_all(const InterfaceInfo& interface,
                                                    const ConnectOptions& options) const {
   const Connections::Opening opening(*connections_);
-  const Instant deadline = deadline_of(options, *parts_.clock);
+  const Instant deadline = deadline_of(options, *parts_->clock);
   std::vector<Opened> all;
   std::exception_ptr failure;
-  for (const auto& provider : parts_.broker.await_service(query(interface, options), deadline)) {
-    const Duration left = std::max(Duration::zero(), deadline - parts_.clock->now());
+  for (const auto& provider : parts_->broker.await_service(query(interface, options), deadline)) {
+    const Duration left = std::max(Duration::zero(), deadline - parts_->clock->now());
     try {
       all.push_back(
           {Guid{provider->provider}, provider->entity,
@@ -324,13 +326,13 @@ ConnectOptions Connector::to(const ServiceReference& reference, ConnectOptions o
 std::shared_ptr<Channel> Connector::open_foreign(const InterfaceInfo& interface,
                                                  const ConnectOptions& options) const {
   const Connections::Opening opening(*connections_);
-  rpc::DdsChannel::Options dds_options;
+  rpc::RemoteChannel::Options dds_options;
   const std::string service = options.name.empty() ? std::string(interface.name) : options.name;
   dds_options.peer = "the foreign server of " + service;
   dds_options.not_faster = "the provider is not built with Skein";
   dds_options.timeout = options.timeout;
-  dds_options.spin = parts_.spin;
-  dds_options.journal = parts_.journal;
+  dds_options.spin = parts_->spin;
+  dds_options.journal = parts_->journal;
   dds_options.stands = [connections = connections_] {
     connections->refuse_if_closed();
     return true;
@@ -338,9 +340,9 @@ std::shared_ptr<Channel> Connector::open_foreign(const InterfaceInfo& interface,
   dds_options.begun = [connections = connections_](const auto& channel) {
     connections->add(channel);
   };
-  return rpc::DdsChannel::open(parts_.participant, parts_.control, parts_.continuations,
-                               parts_.clock, {service, Guid{}, interface.representation()},
-                               std::move(dds_options));
+  return rpc::RemoteChannel::open(parts_->dds, parts_->control, parts_->continuations,
+                                  parts_->clock, {service, Guid{}, interface.representation()},
+                                  std::move(dds_options));
 }
 
 // The first provider that takes the session: in the Broker's order, those to be asked last at the
@@ -351,23 +353,23 @@ ProviderConnection Connector::open_next(const Query& query, const std::string& s
                                         const ProviderQuery& wanted) const {
   const Connections::Opening opening(*connections_);
   const auto left = [&] {
-    return std::max(Duration::zero(), wanted.deadline - parts_.clock->now());
+    return std::max(Duration::zero(), wanted.deadline - parts_->clock->now());
   };
   std::exception_ptr failure;
   bool overloaded = false;
   std::optional<Instant> first_asked;
   do {
     if (failure) {
-      connections_->pause(*parts_.clock,
-                          std::min(wanted.deadline, parts_.clock->after(kRetryPause)));
+      connections_->pause(*parts_->clock,
+                          std::min(wanted.deadline, parts_->clock->after(kRetryPause)));
     }
-    auto providers = parts_.broker.find_service(query);
-    if (providers.empty()) throw NoProvider(parts_.broker.explain(query));
-    arrange(providers, wanted, query, parts_.loads);
+    auto providers = parts_->broker.find_service(query);
+    if (providers.empty()) throw NoProvider(parts_->broker.explain(query));
+    arrange(providers, wanted, query, parts_->loads);
     if (providers.empty()) throw NoProvider("no other provider of " + query.name + " is available");
     // Who is asked for by its identity has all of the time.
     const bool may_try_another = query.provider.is_nil() && (wanted.wait || providers.size() > 1);
-    const Instant now = parts_.clock->now();
+    const Instant now = parts_->clock->now();
     const Duration spent = now - first_asked.value_or(now);
     first_asked = first_asked.value_or(now);
     for (const auto& provider : providers) {

@@ -13,6 +13,8 @@
 #include "brokerless_discovery/broker.hpp"
 #include "brokerless_discovery/load_board.hpp"
 #include "brokerless_discovery/process_watch.hpp"
+#include "call_port/dds_call_port.hpp"
+#include "connector/connector_parts.hpp"
 #include "core/log.hpp"
 #include "core/suggestion.hpp"
 #include "core/system/interface_name.hpp"
@@ -21,11 +23,12 @@
 #include "dds/port/port.hpp"
 #include "dds/port/vendor_names.hpp"
 #include "entity/asker.hpp"
+#include "entity/head_parts.hpp"
 #include "entity/inspection_topic.hpp"
 #include "entity/namesakes.hpp"
 #include "entity/periodic_topic.hpp"
 #include "entity/self_report.hpp"
-#include "rpc/server/dds_server.hpp"
+#include "rpc/server/remote_server.hpp"
 #include "rpc/service/call_journal.hpp"
 #include "rpc/service/local_directory.hpp"
 #include "rpc/service/reception.hpp"
@@ -137,8 +140,8 @@ struct Entity::Provided {
   std::string name;
   std::shared_ptr<ThreadExecutor> executor;
   std::shared_ptr<rpc::Service> service;  // keeps the executor, and the clock
-  std::unique_ptr<rpc::DdsServer> server;
-  std::unique_ptr<rpc::DdsServer> same_host_server;
+  std::unique_ptr<rpc::RemoteServer> server;
+  std::unique_ptr<rpc::RemoteServer> same_host_server;
   Broker::Registration load;
   Broker::Registration registration;
   std::string owner;  // empty for a Body
@@ -188,6 +191,7 @@ struct Entity::State {
       : options(std::move(given)),
         process(options.process ? options.process : std::make_shared<Process>()),
         participant(make_participant()),
+        calls_over_dds(*participant),
         same_host(options.shared_memory_calls.value_or(!options.vendor->is_inside_process())
                       ? std::make_unique<same_host::CallPorts>(
                             same_host::PortOptions{participant->guid(), options.spin})
@@ -203,9 +207,9 @@ struct Entity::State {
                   return types_told_by(provider, who, deadline, gives_up);
                 }}),
         loads(*participant, process->clock(), control),
-        connector({*participant, broker, loads, process->directory(), control, continuations,
-                   process->shared_clock(), options.spin, journal,
-                   same_host ? &same_host->clients : nullptr}),
+        connector({calls_over_dds, same_host ? &same_host->clients : nullptr, broker, loads,
+                   process->directory(), control, continuations, process->shared_clock(),
+                   options.spin, journal}),
         head({connector, broker, process->directory(), process->clock(), *participant, control,
               options.system + "/" + options.name},
              options.head) {}
@@ -238,6 +242,7 @@ struct Entity::State {
   const std::shared_ptr<Process> process;
   topics::Register topic_register;
   std::unique_ptr<dds::Participant> participant;
+  calls::DdsCallPort calls_over_dds;
   const std::unique_ptr<same_host::CallPorts> same_host;
   // Shared with connections, which may outlive the entity.
   const std::shared_ptr<ThreadExecutor> continuations =
@@ -478,17 +483,18 @@ Guid Entity::add(std::shared_ptr<Servant> servant, const ServiceOptions& options
   const Guid id = provided->service->id();
   // An owner calls its own CSP in the process; nobody else may, so no endpoint is needed.
   if (owner != this->id()) {
-    provided->server = std::make_unique<rpc::DdsServer>(
-        *state_->participant, state_->control, state_->process->clock(), provided->service,
-        rpc::DdsServer::Options{.foreign_clients = owner.empty(),
-                                .on_load = state_->loads.notifier()});
+    provided->server = std::make_unique<rpc::RemoteServer>(
+        state_->calls_over_dds, state_->control, state_->process->clock(), provided->service,
+        rpc::RemoteServer::Options{.foreign_clients = owner.empty(),
+                                   .on_load = state_->loads.notifier()});
   }
   if (provided->server && state_->same_host) {
     try {
-      provided->same_host_server = std::make_unique<rpc::DdsServer>(
+      provided->same_host_server = std::make_unique<rpc::RemoteServer>(
           state_->same_host->providers, state_->control, state_->process->clock(),
           provided->service,
-          rpc::DdsServer::Options{.foreign_clients = false, .on_load = state_->loads.notifier()});
+          rpc::RemoteServer::Options{.foreign_clients = false,
+                                     .on_load = state_->loads.notifier()});
       // While it takes requests it polls for as long as the entity says.
       if (options.threads == 1 && options.scheduling.spin <= state_->options.spin) {
         provided->executor->work_while_idle(std::make_shared<rpc::Reception>(

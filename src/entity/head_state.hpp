@@ -10,10 +10,10 @@
 #include "brokerless_discovery/broker.hpp"
 #include "core/recent_set.hpp"
 #include "decision_log.hpp"
+#include "head_parts.hpp"
 #include "rpc/service/introspection_topic.hpp"
 #include "rpc/service/service.hpp"
 #include "selection/wire_values.hpp"
-#include "skein/head.hpp"
 
 namespace skein {
 

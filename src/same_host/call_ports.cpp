@@ -1,6 +1,7 @@
 #include "call_ports.hpp"
 
 #include <atomic>
+#include <string>
 #include <utility>
 
 #include "dds/port/sample_format.hpp"
@@ -12,169 +13,83 @@ namespace {
 // RTPS reserves it for vendors' own kinds of entities: no writer or reader of DDS has it.
 constexpr std::uint8_t kEndpointKind = 0x43;
 
-// Of a provider, or of a client's writer.
-Guid identity_in(const std::string& partition) {
-  if (const auto identity = Guid::from_hex(partition)) return *identity;
-  throw InvalidArgument("the partition '" + partition +
-                        "' names no peer: through shared memory one is connected to one peer");
-}
-
-/// Owns a copy: what lies in the ring is gone after the call that delivers it.
-class CopyOwner final : public dds::SampleOwner {
+/// What comes through the links whose inbox it is.
+class LinkReceiver : public calls::Receiver, public Inbox {
  public:
-  CopyOwner(dds::Sample& sample, Turn& turn) : sample_(sample), turn_(turn) {}
-  std::shared_ptr<const void> keep() override {
-    auto kept = std::make_shared<Bytes>(sample_.cdr);
-    sample_.cdr = *kept;
-    return kept;
-  }
-  bool may_take_long() override { return turn_.leave(); }
+  LinkReceiver(const calls::Address& address, calls::Listener listener)
+      : representation_(is_xcdr2(address.representation) ? dds::DataRepresentation::Xcdr2
+                                                         : dds::DataRepresentation::Xcdr1),
+        listener_(std::move(listener)) {}
 
- private:
-  dds::Sample& sample_;
-  Turn& turn_;
-};
+  std::uint64_t malformed() const override { return malformed_; }
 
-/// A message within on_message(), on the thread that takes it.
-struct Current {
-  dds::Sample sample;
-  Turn& turn;
-};
-thread_local Current* current = nullptr;
+  void on_begin(Link& link) override { tell(link, true); }
+  void on_end(Link& link) override { tell(link, false); }
 
-/// A reader's functions over links that an inbox is about.
-class LinkReader : public dds::Reader, public Inbox {
- public:
-  LinkReader(const Guid& guid, const dds::Qos& qos, dds::ReaderListener listener)
-      : guid_(guid), representation_(qos.representation), listener_(std::move(listener)) {}
-
-  // Within on_data alone is there something to take: the message that it was called for.
-  std::size_t take(const std::function<void(const dds::Sample&)>& consumer,
-                   std::size_t limit) override {
-    if (!current || limit == 0) return 0;
-    auto [sample, turn] = *std::exchange(current, nullptr);
-    CopyOwner owner(sample, turn);
-    sample.owner = &owner;
-    consumer(sample);
-    return 1;
-  }
-
-  Guid guid() const override { return guid_; }
-
-  std::vector<Guid> matched_writers() const override {
-    std::lock_guard lock(mutex_);
-    return matched_;
-  }
-
-  dds::ReceiveCounters counters() const override {
-    dds::ReceiveCounters counters;
-    counters.malformed = malformed_;
-    return counters;
-  }
-
-  void on_begin(Link& link) override {
-    {
-      std::lock_guard lock(mutex_);
-      matched_.push_back(link.peer());
-    }
-    if (listener_.on_matched) listener_.on_matched(link.peer(), true);
-  }
-
-  void on_message(Link& link, std::span<const std::byte> message, Turn& turn) override {
-    if (!dds::has_representation(message, representation_)) {
+  // The listener may outlive this, once it has left its turn.
+  void on_message(Link& link, std::span<const std::byte> message, calls::Turn& turn) override {
+    if (dds::has_representation(message, representation_)) {
+      listener_.on_message({message, link.peer(), link.lent(), &turn});
+    } else {
       ++malformed_;
-      return;
     }
-    Current own{{}, turn};
-    own.sample.cdr = message;
-    own.sample.writer = link.peer();
-    own.sample.lent = link.lent();
-    current = &own;
-    listener_.on_data(*this);  // which may outlive this, where it has left its turn
-    current = nullptr;
-  }
-
-  void on_end(Link& link) override {
-    {
-      std::lock_guard lock(mutex_);
-      std::erase(matched_, link.peer());
-    }
-    if (listener_.on_matched) listener_.on_matched(link.peer(), false);
   }
 
  private:
-  const Guid guid_;
+  void tell(const Link& link, bool found) const {
+    if (listener_.on_peer) listener_.on_peer(link.peer(), found);
+  }
+
   const dds::DataRepresentation representation_;
-  const dds::ReaderListener listener_;
+  const calls::Listener listener_;
   std::atomic<std::uint64_t> malformed_{0};
-  mutable std::mutex mutex_;
-  std::vector<Guid> matched_;
 };
 
-/// Writes to the other end of a link; its end is the link's.
-class LinkWriter final : public dds::Writer {
+/// Sends to the other end of a link, which ends with it.
+class LinkSender final : public calls::Sender {
  public:
-  LinkWriter(const Guid& guid, std::shared_ptr<Link> link, const dds::Qos& qos,
-             const dds::WriterListener& listener, bool must_arrive)
-      : guid_(guid),
-        link_(std::move(link)),
-        max_blocking_(qos.max_blocking),
-        on_full_(listener.on_full),
-        must_arrive_(must_arrive) {
-    const auto on_matched = listener.on_matched;
-    if (!link_ || !on_matched) return;
-    const Guid reader = link_->peer();
-    on_matched(reader, true);
-    if (!link_->ending().set([on_matched, reader] { on_matched(reader, false); })) {
-      on_matched(reader, false);
-    }
+  /// `link` may be null: nobody is there any more.
+  LinkSender(std::shared_ptr<Link> link, const calls::PeerListener& on_peer,
+             std::function<void()> on_full, bool must_arrive)
+      : link_(std::move(link)), on_full_(std::move(on_full)), must_arrive_(must_arrive) {
+    if (!link_ || !on_peer) return;
+    const Guid peer = link_->peer();
+    on_peer(peer, true);
+    if (!link_->ending().set([on_peer, peer] { on_peer(peer, false); })) on_peer(peer, false);
   }
-  ~LinkWriter() override {
+  ~LinkSender() override {
     if (!link_) return;
     link_->ending().forget();
     link_->close();
   }
 
-  void write(std::span<const std::byte> cdr, const dds::KeyHash&) override { send(cdr, nullptr); }
-  void write_within(const std::function<Duration()>& left,
-                    std::span<const std::byte> cdr) override {
-    send(cdr, &left);
+  void send(std::span<const std::byte> message, const std::function<Duration()>& left) override {
+    dds::check_size(message.size(), "a message");
+    conclude(link_ ? link_->send(message, patience(message.size(), left ? &left : nullptr))
+                   : Link::Sent::Ended);
   }
 
-  bool write_lending(std::span<const std::byte> cdr, const std::shared_ptr<LoanMemory>& value,
-                     std::size_t position) override {
-    dds::check_size(cdr.size() + sizeof(LoanNote), "a message");
-    const auto sent = link_
-                          ? link_->send_lending(cdr, value, position, patience(cdr.size(), nullptr))
-                          : std::optional(Link::Sent::Ended);
+  bool send_lending(std::span<const std::byte> message, const std::shared_ptr<LoanMemory>& value,
+                    std::size_t position) override {
+    dds::check_size(message.size() + sizeof(LoanNote), "a message");
+    const auto sent =
+        link_ ? link_->send_lending(message, value, position, patience(message.size(), nullptr))
+              : std::optional(Link::Sent::Ended);
     if (sent) conclude(*sent);
     return sent.has_value();
   }
 
-  void dispose(const dds::KeyHash&) override {
-    throw InvalidArgument("calls have no instances to dispose of");
-  }
-
-  bool wait_for_acknowledgments(std::chrono::milliseconds timeout) override {
+  bool await_taken(std::chrono::milliseconds timeout) override {
     return !link_ || link_->await_taken(saturating_sum(std::chrono::steady_clock::now(), timeout));
   }
 
-  Guid guid() const override { return guid_; }
-
-  std::vector<Guid> matched_readers() const override {
-    return link_ && !link_->ended() ? std::vector<Guid>{link_->peer()} : std::vector<Guid>();
-  }
+  Guid identity() const override { return link_ ? link_->own() : Guid{}; }
 
  private:
-  void send(std::span<const std::byte> cdr, const std::function<Duration()>* left) const {
-    dds::check_size(cdr.size(), "a message");
-    conclude(link_ ? link_->send(cdr, patience(cdr.size(), left)) : Link::Sent::Ended);
-  }
-
-  // A large message needs time in proportion, which a reader that takes little must not stretch.
+  // A large message needs time in proportion, which a receiver that takes little must not stretch.
   Link::Patience patience(std::size_t size, const std::function<Duration()>* left) const {
-    constexpr std::size_t kSlowestReader = 16 << 10;  // octets in a millisecond
-    return {max_blocking_ + std::chrono::milliseconds(size / kSlowestReader), on_full_, left};
+    constexpr std::size_t kSlowestReceiver = 16 << 10;  // octets in a millisecond
+    return {calls::kPatience + std::chrono::milliseconds(size / kSlowestReceiver), on_full_, left};
   }
 
   void conclude(Link::Sent sent) const {
@@ -183,15 +98,13 @@ class LinkWriter final : public dds::Writer {
         return;
       case Link::Sent::NoRoom:
         throw Overloaded("the other side has not taken the message from its memory in time: " +
-                         std::to_string(max_blocking_.count()) + " ms, and 1 s for each 16 MB");
+                         std::to_string(calls::kPatience.count()) + " ms, and 1 s for each 16 MB");
       case Link::Sent::Ended:
         if (must_arrive_) throw Unavailable("the connection has ended; nothing was sent");
     }
   }
 
-  const Guid guid_;
   const std::shared_ptr<Link> link_;
-  const std::chrono::milliseconds max_blocking_;
   const std::function<void()> on_full_;
   const bool must_arrive_;
 };
@@ -209,35 +122,33 @@ Guid EndpointIdentities::next() {
 
 // ---- providers
 
-/// Offers the provider while it stands.
-class ProviderPort::RequestReader final : public LinkReader {
+/// Offers the provider while it exists.
+class ProviderPort::RequestReceiver final : public LinkReceiver {
  public:
-  RequestReader(ProviderPort& port, const dds::Qos& qos, dds::ReaderListener listener)
-      : LinkReader(port.identities_.next(), qos, std::move(listener)),
+  RequestReceiver(ProviderPort& port, const calls::Address& address, calls::Listener listener)
+      : LinkReceiver(address, std::move(listener)),
         port_(port),
+        provider_(address.provider),
         receiver_("skein-requests", port.options_.spin) {
-    for (const std::string& partition : qos.partitions) {
-      if (!partition.empty()) providers_.push_back(identity_in(partition));
-    }
-    for (const Guid& provider : providers_) {
-      port_.meeting_.offer(provider, guid(), receiver_.notifier(),
-                           [this](std::shared_ptr<Link> link) {
-                             port_.add(link);
-                             receiver_.add(std::move(link), *this);
-                           });
-    }
+    port_.meeting_.offer(provider_, port_.identities_.next(), receiver_.notifier(),
+                         [this](std::shared_ptr<Link> link) {
+                           port_.add(link);
+                           receiver_.add(std::move(link), *this);
+                         });
   }
-  ~RequestReader() override {
-    for (const Guid& provider : providers_) port_.meeting_.withdraw(provider);
+  ~RequestReceiver() override {
+    port_.meeting_.withdraw(provider_);
     receiver_.remove(*this);
   }
 
-  std::shared_ptr<dds::CallerDelivery> caller_delivery() override { return receiver_.delivery(); }
+  std::shared_ptr<calls::CallerDelivery> caller_delivery() const override {
+    return receiver_.delivery();
+  }
 
  private:
   ProviderPort& port_;
-  std::vector<Guid> providers_;
-  Receiver receiver_;
+  const Guid provider_;
+  same_host::Receiver receiver_;
 };
 
 ProviderPort::ProviderPort(Meeting& meeting, const PortOptions& options)
@@ -257,37 +168,38 @@ std::shared_ptr<Link> ProviderPort::find(const Guid& client) {
   return found == links_.end() ? nullptr : found->second.lock();
 }
 
-std::unique_ptr<dds::Reader> ProviderPort::create_reader(const dds::Topic&, const dds::Qos& qos,
-                                                         dds::ReaderListener listener) {
-  return std::make_unique<RequestReader>(*this, qos, std::move(listener));
+std::unique_ptr<calls::Receiver> ProviderPort::receive_requests(const calls::Address& address, bool,
+                                                                calls::Listener listener) {
+  return std::make_unique<RequestReceiver>(*this, address, std::move(listener));
 }
 
-std::unique_ptr<dds::Writer> ProviderPort::create_writer(const dds::Topic&, const dds::Qos& qos,
-                                                         dds::WriterListener listener) {
-  const Guid client = identity_in(qos.partitions.empty() ? "" : qos.partitions.front());
-  return std::make_unique<LinkWriter>(identities_.next(), find(client), qos, listener, false);
+std::unique_ptr<calls::Sender> ProviderPort::send_replies(const calls::Address&, const Guid& client,
+                                                          calls::PeerListener on_peer) {
+  return std::make_unique<LinkSender>(find(client), on_peer, nullptr, false);
 }
 
 // ---- clients
 
-class ClientPort::ReplyReader final : public LinkReader {
+class ClientPort::ReplyReceiver final : public LinkReceiver {
  public:
-  ReplyReader(ClientPort& port, const dds::Qos& qos, dds::ReaderListener listener)
-      : LinkReader(port.identities_.next(), qos, std::move(listener)), port_(port) {}
-  ~ReplyReader() override { port_.receiver_.remove(*this); }
+  ReplyReceiver(ClientPort& port, const calls::Address& address, calls::Listener listener)
+      : LinkReceiver(address, std::move(listener)), port_(port) {}
+  ~ReplyReceiver() override { port_.receiver_.remove(*this); }
 
   void on_end(Link& link) override {
     port_.note_end(link);
-    LinkReader::on_end(link);
+    LinkReceiver::on_end(link);
   }
 
-  /// Before others know of this reader.
-  void read(std::shared_ptr<Link> link) { delivery_ = port_.receiver_.add(std::move(link), *this); }
-  std::shared_ptr<dds::CallerDelivery> caller_delivery() override { return delivery_; }
+  /// Before others know of this receiver.
+  void receive(std::shared_ptr<Link> link) {
+    delivery_ = port_.receiver_.add(std::move(link), *this);
+  }
+  std::shared_ptr<calls::CallerDelivery> caller_delivery() const override { return delivery_; }
 
  private:
   ClientPort& port_;
-  std::shared_ptr<dds::CallerDelivery> delivery_;
+  std::shared_ptr<calls::CallerDelivery> delivery_;
 };
 
 ClientPort::ClientPort(Meeting& meeting, const PortOptions& options)
@@ -298,37 +210,37 @@ ClientPort::ClientPort(Meeting& meeting, const PortOptions& options)
 
 ClientPort::~ClientPort() = default;
 
-std::unique_ptr<dds::Writer> ClientPort::create_writer(const dds::Topic&, const dds::Qos& qos,
-                                                       dds::WriterListener listener) {
-  const Guid provider = identity_in(qos.partitions.empty() ? "" : qos.partitions.front());
+std::unique_ptr<calls::Sender> ClientPort::send_requests(const calls::Address& address,
+                                                         calls::PeerListener on_peer,
+                                                         std::function<void()> on_full) {
   const Guid client = identities_.next();
   {
     std::lock_guard lock(mutex_);
-    if (distrusted_.contains(provider)) {
+    if (distrusted_.contains(address.provider)) {
       throw Unavailable("the provider has damaged the memory that it shared before");
     }
   }
-  auto link = meeting_.join(provider, client, receiver_.notifier());
+  auto link = meeting_.join(address.provider, client, receiver_.notifier());
   {
     std::lock_guard lock(mutex_);
     std::erase_if(connections_, [](const auto& each) { return each.second.link.expired(); });
-    connections_.insert_or_assign(client, Connection{link, provider});
+    connections_.insert_or_assign(client, Connection{link, address.provider});
   }
-  return std::make_unique<LinkWriter>(client, std::move(link), qos, listener, true);
+  return std::make_unique<LinkSender>(std::move(link), on_peer, std::move(on_full), true);
 }
 
-std::unique_ptr<dds::Reader> ClientPort::create_reader(const dds::Topic&, const dds::Qos& qos,
-                                                       dds::ReaderListener listener) {
-  const Guid client = identity_in(qos.partitions.empty() ? "" : qos.partitions.front());
-  auto reader = std::make_unique<ReplyReader>(*this, qos, std::move(listener));
+std::unique_ptr<calls::Receiver> ClientPort::receive_replies(const calls::Address& address,
+                                                             const Guid& client,
+                                                             calls::Listener listener) {
+  auto receiver = std::make_unique<ReplyReceiver>(*this, address, std::move(listener));
   std::shared_ptr<Link> link;
   {
     std::lock_guard lock(mutex_);
     const auto found = connections_.find(client);
     if (found != connections_.end()) link = found->second.link.lock();
   }
-  if (link) reader->read(std::move(link));
-  return reader;
+  if (link) receiver->receive(std::move(link));
+  return receiver;
 }
 
 void ClientPort::note_end(const Link& link) {

@@ -7,8 +7,8 @@
 #include <memory>
 #include <mutex>
 
+#include "call_port/call_port.hpp"
 #include "core/recent_set.hpp"
-#include "dds/port/port.hpp"
 #include "meeting.hpp"
 #include "receiver.hpp"
 
@@ -33,30 +33,25 @@ class EndpointIdentities {
   std::atomic<std::uint32_t> last_{0};
 };
 
-/// The port to DDS as a provider of calls uses it, between processes of one host: its readers take
-/// requests, its writers each write the replies to one client. What is read and written are the
-/// same bytes as over DDS, reliable, in order, and for who is connected now. A reader offers itself
-/// to clients under each of its partitions but "", which must be the identity of a provider; a
-/// writer's partition must be the identity of a client's writer. Listeners run inside
-/// create_writer(), or on a thread that each reader has for itself from its first client on,
-/// `skein-requests`: what takes long there holds up no other reader. Calls of a reader's listener
-/// for different clients may overlap.
-class ProviderPort final : public dds::Participant {
+/// The provider's side of calls between processes of one host. Listeners run inside
+/// send_replies(), or on a thread that each receiver has for itself from its first client on,
+/// `skein-requests`: what takes long there holds up no other receiver. Calls of a receiver's
+/// listener for different clients may overlap.
+class ProviderPort final : public calls::ProviderPort {
  public:
   /// `meeting` outlives it.
   ProviderPort(Meeting& meeting, const PortOptions& options);
   ~ProviderPort() override;
 
-  /// Throws Unavailable where the kernel refuses what is needed.
-  std::unique_ptr<dds::Reader> create_reader(const dds::Topic& topic, const dds::Qos& qos,
-                                             dds::ReaderListener listener) override;
-  /// Nobody is matched where the client has left.
-  std::unique_ptr<dds::Writer> create_writer(const dds::Topic& topic, const dds::Qos& qos,
-                                             dds::WriterListener listener) override;
-  Guid guid() const override { return options_.participant; }
+  /// Clients that are not built with Skein do not come here.
+  std::unique_ptr<calls::Receiver> receive_requests(const calls::Address& address, bool foreign,
+                                                    calls::Listener listener) override;
+  /// Nobody is found if the client has left; what is sent then is dropped.
+  std::unique_ptr<calls::Sender> send_replies(const calls::Address& address, const Guid& client,
+                                              calls::PeerListener on_peer = {}) override;
 
  private:
-  class RequestReader;
+  class RequestReceiver;
   void add(const std::shared_ptr<Link>& link);
   std::shared_ptr<Link> find(const Guid& client);
 
@@ -67,25 +62,25 @@ class ProviderPort final : public dds::Participant {
   std::map<Guid, std::weak_ptr<Link>> links_;  // by client
 };
 
-/// The same for who calls: a writer writes requests to the provider that its partition names, and
-/// connects to it; a reader's partition must be the identity of such a writer, whose replies it
-/// takes. Listeners run on one thread, `skein-replies`, on those that wait by CallerDelivery, or
-/// inside create_writer(). The connection ends with its writer.
-class ClientPort final : public dds::Participant {
+/// The client's side. Listeners run on one thread, `skein-replies`, on those that wait by
+/// CallerDelivery, or inside send_requests(). The connection ends with its sender.
+class ClientPort final : public calls::ClientPort {
  public:
+  /// `meeting` outlives it.
   ClientPort(Meeting& meeting, const PortOptions& options);
   ~ClientPort() override;
 
-  std::unique_ptr<dds::Reader> create_reader(const dds::Topic& topic, const dds::Qos& qos,
-                                             dds::ReaderListener listener) override;
-  /// Blocks for as long as Meeting::join(). Throws Unavailable with the reason where the provider
-  /// is not reached in this way, or has damaged what it shares before.
-  std::unique_ptr<dds::Writer> create_writer(const dds::Topic& topic, const dds::Qos& qos,
-                                             dds::WriterListener listener) override;
-  Guid guid() const override { return options_.participant; }
+  /// Blocks for as long as Meeting::join(). Throws Unavailable with the reason if the provider is
+  /// not reached in this way, or has damaged what it shares before.
+  std::unique_ptr<calls::Sender> send_requests(const calls::Address& address,
+                                               calls::PeerListener on_peer,
+                                               std::function<void()> on_full = {}) override;
+  std::unique_ptr<calls::Receiver> receive_replies(const calls::Address& address,
+                                                   const Guid& client,
+                                                   calls::Listener listener) override;
 
  private:
-  class ReplyReader;
+  class ReplyReceiver;
   struct Connection {
     std::weak_ptr<Link> link;
     Guid provider;
@@ -96,7 +91,7 @@ class ClientPort final : public dds::Participant {
   const PortOptions options_;
   EndpointIdentities identities_;
   std::mutex mutex_;
-  std::map<Guid, Connection> connections_;  // by the writer's identity
+  std::map<Guid, Connection> connections_;  // by client
   RecentSet<Guid> distrusted_{1024};        // providers
   Receiver receiver_;
 };

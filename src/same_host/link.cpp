@@ -194,7 +194,7 @@ std::optional<std::span<const std::byte>> Link::receive(Bytes& spare) {
 }
 
 // Nothing where a memory is gone: the message has told all.
-std::optional<dds::LentValue> Link::borrow() {
+std::optional<calls::LentValue> Link::borrow() {
   if (side_ != Side::Provider) throw BrokenRing("a reply that lends");
   if (!borrower_) borrower_.emplace(socket_, &state_in(*memory_).loans, memory_);
   return borrower_->borrow(message_);

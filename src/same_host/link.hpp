@@ -116,7 +116,7 @@ class Link : public std::enable_shared_from_this<Link> {
   std::optional<std::span<const std::byte>> receive(Bytes& spare);
   void release(Bytes& spare);
   /// What the message has left out, as valid as it; or null.
-  const dds::LentValue* lent() const noexcept { return lent_ ? &*lent_ : nullptr; }
+  const calls::LentValue* lent() const noexcept { return lent_ ? &*lent_ : nullptr; }
   /// Octets that have come of a message without its end.
   std::size_t unfinished() const noexcept { return unfinished_; }
   RingReader& in() noexcept { return in_; }
@@ -139,7 +139,7 @@ class Link : public std::enable_shared_from_this<Link> {
   Sent write(RingWriter::Part message, const Patience& patience);
   Lender::Connection lending();
   void forget(const LoanNote& gone);
-  std::optional<dds::LentValue> borrow();
+  std::optional<calls::LentValue> borrow();
 
   const Side side_;
   const std::shared_ptr<const FileDescriptor> socket_;
@@ -150,7 +150,7 @@ class Link : public std::enable_shared_from_this<Link> {
   RingReader in_;
   Bytes message_;
   std::optional<Borrower> borrower_;
-  std::optional<dds::LentValue> lent_;
+  std::optional<calls::LentValue> lent_;
   std::atomic<std::size_t> unfinished_{0};
   std::atomic<bool> ended_{false};
   std::atomic<bool> broken_{false};

@@ -152,7 +152,7 @@ bool Lender::put(Place& place, const std::shared_ptr<LoanMemory>& memory) {
 
 // ---- borrowing
 
-std::optional<dds::LentValue> Borrower::borrow(std::span<const std::byte> message) {
+std::optional<calls::LentValue> Borrower::borrow(std::span<const std::byte> message) {
   LoanNote note;
   if (message.size() < sizeof note) throw BrokenRing("a loan that does not say of what");
   std::memcpy(&note, message.last(sizeof note).data(), sizeof note);
@@ -167,7 +167,7 @@ std::optional<dds::LentValue> Borrower::borrow(std::span<const std::byte> messag
     throw BrokenRing("a loan of " + std::to_string(note.size) + " octets in a memory of " +
                      std::to_string(place.memory->size()));
   }
-  dds::LentValue lent{{}, note.position, {}};
+  calls::LentValue lent{{}, note.position, {}};
   if (place.memory) {
     lent.value = {place.memory->data(), note.size};
     lent.use = std::make_shared<Use>(keeps_, place.memory, counts_->reading[note.place]);

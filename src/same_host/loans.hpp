@@ -9,9 +9,9 @@
 #include <span>
 #include <utility>
 
+#include "call_port/call_port.hpp"
 #include "core/system/file_descriptor.hpp"
 #include "dds/port/largest_sample.hpp"
-#include "dds/port/port.hpp"
 #include "futex.hpp"
 #include "ring.hpp"
 #include "shared_memory.hpp"
@@ -91,7 +91,7 @@ class Borrower {
 
   /// The value that the note at the end of `message` speaks of, empty where it cannot be read here;
   /// nothing where the note tells that a memory is gone. Throws BrokenRing.
-  std::optional<dds::LentValue> borrow(std::span<const std::byte> message);
+  std::optional<calls::LentValue> borrow(std::span<const std::byte> message);
 
  private:
   struct Place {

@@ -60,7 +60,7 @@ struct Receiver::Taker {
 };
 
 /// A turn whose link is locked.
-class Receiver::OwnTurn final : public Turn {
+class Receiver::OwnTurn final : public calls::Turn {
  public:
   OwnTurn(Taker& taker, Link& link, Bytes& spare, std::unique_lock<std::mutex>& lock)
       : taker_(taker), link_(link), spare_(spare), lock_(lock) {
@@ -88,7 +88,7 @@ class Receiver::OwnTurn final : public Turn {
 };
 
 // Once it is over, the inbox and the receiver may be gone.
-class Receiver::Entry final : public dds::CallerDelivery {
+class Receiver::Entry final : public calls::CallerDelivery {
  public:
   Entry(Receiver& receiver_, std::shared_ptr<Link> link_, Inbox& inbox_, std::uint64_t id_)
       : link(std::move(link_)),
@@ -183,7 +183,7 @@ void Receiver::Entry::sleep(const std::function<bool()>& over_) {
 }
 
 /// A thread that leads in the receiver's place. The receiver is there while it has the lead.
-class Receiver::Consumer final : public dds::CallerDelivery {
+class Receiver::Consumer final : public calls::CallerDelivery {
  public:
   explicit Consumer(Receiver& receiver)
       : receiver_(receiver), lead_(receiver.lead_), news_(receiver.news_) {}
@@ -267,7 +267,7 @@ std::function<void()> Receiver::notifier() const {
   return [news = news_] { news->tell_of_changes(); };
 }
 
-std::shared_ptr<dds::CallerDelivery> Receiver::add(std::shared_ptr<Link> link, Inbox& inbox) {
+std::shared_ptr<calls::CallerDelivery> Receiver::add(std::shared_ptr<Link> link, Inbox& inbox) {
   std::shared_ptr<Entry> entry;
   {
     std::lock_guard lock(mutex_);
@@ -287,7 +287,7 @@ std::shared_ptr<dds::CallerDelivery> Receiver::add(std::shared_ptr<Link> link, I
   return entry;
 }
 
-std::shared_ptr<dds::CallerDelivery> Receiver::delivery() const { return consumer_; }
+std::shared_ptr<calls::CallerDelivery> Receiver::delivery() const { return consumer_; }
 
 void Receiver::remove(Inbox& inbox) {
   Entries removed;

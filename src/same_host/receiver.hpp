@@ -13,8 +13,8 @@
 #include <thread>
 #include <vector>
 
+#include "call_port/call_port.hpp"
 #include "dds/port/largest_sample.hpp"
-#include "dds/port/port.hpp"
 #include "doorbell.hpp"
 #include "futex.hpp"
 #include "lead.hpp"
@@ -23,24 +23,13 @@
 
 namespace skein::same_host {
 
-/// The right to take what comes through a link, which a thread has while it is in on_message().
-class Turn {
- public:
-  /// What follows on this thread may take long: where it does, another thread takes what comes
-  /// meanwhile. The message is gone. False, and nothing has changed, where that cannot be.
-  virtual bool leave() = 0;
-
- protected:
-  ~Turn() = default;
-};
-
 /// Who gets what comes through links. Called on the receiver's thread, or a caller's, one at a time
 /// for each link but for who has left his turn; must return soon, or leave it.
 class Inbox {
  public:
   virtual ~Inbox() = default;
   virtual void on_begin(Link& link) = 0;
-  virtual void on_message(Link& link, std::span<const std::byte> message, Turn& turn) = 0;
+  virtual void on_message(Link& link, std::span<const std::byte> message, calls::Turn& turn) = 0;
   /// Nothing more comes through this one.
   virtual void on_end(Link& link) = 0;
 };
@@ -107,11 +96,11 @@ class Receiver {
 
   /// Throws Unavailable where there is no thread. What it returns is for threads that wait for what
   /// this link brings.
-  std::shared_ptr<dds::CallerDelivery> add(std::shared_ptr<Link> link, Inbox& inbox);
+  std::shared_ptr<calls::CallerDelivery> add(std::shared_ptr<Link> link, Inbox& inbox);
   /// For one thread that takes what all links bring. Between its calls of deliver_until() it is as
   /// one that has left its turn: take_back() says that it does not come back soon. For inboxes that
   /// leave their turn on no other thread.
-  std::shared_ptr<dds::CallerDelivery> delivery() const;
+  std::shared_ptr<calls::CallerDelivery> delivery() const;
   /// None of its functions runs, or will run, but for those whose turn was left: these may outlive
   /// the inbox, and must not use it any more. Not from one of them.
   void remove(Inbox& inbox);

@@ -1,9 +1,10 @@
 #include <catch2/catch.hpp>
 #include <thread>
 
+#include "call_port/dds_call_port.hpp"
 #include "echo_pair.hpp"
 #include "pairing.hpp"
-#include "rpc/client/dds_channel.hpp"
+#include "rpc/client/remote_channel.hpp"
 #include "test/tools/eventually.hpp"
 #include "test/tools/invariant.hpp"
 #include "test/tools/log.hpp"
@@ -302,14 +303,14 @@ TEST_CASE(
 }
 
 TEST_CASE_METHOD(Pair, "calls beyond a connection's limit are refused as Overloaded and not sent") {
+  calls::DdsCallPort port(client->participant());
   ThreadExecutor control("control");
-  rpc::DdsChannel::Options options;
+  rpc::RemoteChannel::Options options;
   options.peer = "server";
   options.calls_in_flight = 2;
-  Echo::Proxy echo(rpc::DdsChannel::open(
-      client->participant(), control, std::make_shared<ThreadExecutor>("continue"),
-      std::make_shared<SystemClock>(), {std::string(LouderEcho::interface_info().name), id},
-      options));
+  Echo::Proxy echo(rpc::RemoteChannel::open(
+      port, control, std::make_shared<ThreadExecutor>("continue"), std::make_shared<SystemClock>(),
+      {std::string(LouderEcho::interface_info().name), id}, options));
   auto first = echo.within(60s).async_wait(60'000);
   auto second = echo.within(60s).async_wait(60'000);
   CHECK_THROWS_AS(echo.echo("third"), Overloaded);

@@ -1,9 +1,11 @@
 #include <catch2/catch.hpp>
 #include <future>
 
+#include "call_port/dds_call_port.hpp"
 #include "echo_service.hpp"
 #include "pairing.hpp"
-#include "rpc/client/dds_channel.hpp"
+#include "rpc/client/remote_channel.hpp"
+#include "rpc/server/remote_server.hpp"
 #include "test/tools/eventually.hpp"
 
 using namespace skein;
@@ -63,12 +65,14 @@ TEST_CASE("each refusal reaches its caller, however full the server's control qu
   options.queue = 2;
   const auto service = std::make_shared<rpc::Service>(
       std::make_shared<LouderEcho::Skeleton>(echo_service), executor, server->clock(), options);
-  const rpc::DdsServer dds_server(server->participant(), control, server->clock(), service, {});
+  calls::DdsCallPort server_port(server->participant());
+  const rpc::RemoteServer remote_server(server_port, control, server->clock(), service, {});
+  calls::DdsCallPort client_port(client->participant());
   ThreadExecutor client_control("control");
-  rpc::DdsChannel::Options channel_options;
+  rpc::RemoteChannel::Options channel_options;
   channel_options.peer = "server";
-  Echo::Proxy echo(rpc::DdsChannel::open(
-      client->participant(), client_control, std::make_shared<ThreadExecutor>("continue"),
+  Echo::Proxy echo(rpc::RemoteChannel::open(
+      client_port, client_control, std::make_shared<ThreadExecutor>("continue"),
       std::make_shared<SystemClock>(), {std::string(service->interface_info().name), service->id()},
       channel_options));
 
@@ -77,7 +81,7 @@ TEST_CASE("each refusal reaches its caller, however full the server's control qu
   Blockade blockade(control);
   std::vector<Call<bool>> calls;
   for (int i = 0; i < 500; ++i) calls.push_back(echo.within(10min).async_wait(600'000));
-  REQUIRE(eventually([&] { return dds_server.counters().refused >= 499; }));
+  REQUIRE(eventually([&] { return remote_server.counters().refused >= 499; }));
   blockade.lift();
   const auto refused = [&] {
     return std::count_if(calls.begin(), calls.end(), [](const auto& call) { return call.ready(); });

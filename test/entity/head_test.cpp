@@ -1,8 +1,9 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
+#include "call_port/dds_call_port.hpp"
 #include "office.hpp"
-#include "rpc/server/dds_server.hpp"
+#include "rpc/server/remote_server.hpp"
 #include "skein/detail/codec.hpp"
 #include "skein/error.hpp"
 #include "skein/introspection.idl.hpp"
@@ -44,8 +45,8 @@ class DistantWorker {
     options.id = id_;
     service_ = std::make_shared<rpc::Service>(
         std::make_shared<crew::Worker::Skeleton>(std::move(worker)), executor_, clock_, options);
-    server_ = std::make_unique<rpc::DdsServer>(*participant_, control_, clock_, service_,
-                                               rpc::DdsServer::Options{.foreign_clients = false});
+    server_ = std::make_unique<rpc::RemoteServer>(
+        port_, control_, clock_, service_, rpc::RemoteServer::Options{.foreign_clients = false});
   }
 
  private:
@@ -60,9 +61,10 @@ class DistantWorker {
   ThreadExecutor control_{"control"};
   ThreadExecutor executor_{"distant"};
   std::unique_ptr<dds::Participant> participant_;
+  calls::DdsCallPort port_{*participant_};
   Guid id_;
   std::shared_ptr<rpc::Service> service_;
-  std::unique_ptr<rpc::DdsServer> server_;
+  std::unique_ptr<rpc::RemoteServer> server_;
   std::unique_ptr<dds::Writer> writer_;
 };
 

@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "brokerless_discovery/broker.hpp"
-#include "rpc/server/dds_server.hpp"
+#include "call_port/dds_call_port.hpp"
+#include "rpc/server/remote_server.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
 #include "test/connector/echo_service.hpp"
@@ -31,13 +32,14 @@ class ExposedService {
         service_(std::make_shared<rpc::Service>(
             std::make_shared<typename Implementation::Skeleton>(std::move(implementation)),
             executor_, entity.clock(), service_options(entity.broker().new_provider(), queue))),
-        server_(entity.participant(), control_, entity.clock(), service_, {}),
+        port_(entity.participant()),
+        server_(port_, control_, entity.clock(), service_, {}),
         registration_(entity.broker().add_service(
             describe(service_->interface_info(), id(), entity.options().name))) {}
 
   const Guid& id() const { return service_->id(); }
-  rpc::DdsAddress address() const { return {std::string(service_->interface_info().name), id()}; }
-  rpc::DdsServer::Counters counters() const { return server_.counters(); }
+  calls::Address address() const { return {std::string(service_->interface_info().name), id()}; }
+  rpc::RemoteServer::Counters counters() const { return server_.counters(); }
 
   /// From now on no session is opened: who asks for one hears that the service is Overloaded.
   void fill() { full_ = true; }
@@ -71,7 +73,8 @@ class ExposedService {
   ThreadExecutor control_{"control"};
   ThreadExecutor executor_;
   std::shared_ptr<rpc::Service> service_;
-  rpc::DdsServer server_;
+  calls::DdsCallPort port_;
+  rpc::RemoteServer server_;
   brokerless_discovery::Broker::Registration registration_;
 };
 

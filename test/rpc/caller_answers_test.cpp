@@ -10,7 +10,7 @@ using namespace skein::rpc;
 namespace {
 
 /// `bring` says what comes while a thread takes it.
-struct Delivery final : dds::CallerDelivery {
+struct Delivery final : calls::CallerDelivery {
   void lend() override { lent = true; }
   void pause() override { paused = true; }
   void take_back() override { lent = false; }

@@ -4,7 +4,8 @@
 #include <map>
 #include <thread>
 
-#include "rpc/server/dds_server.hpp"
+#include "call_port/dds_call_port.hpp"
+#include "rpc/server/remote_server.hpp"
 #include "rpc/wire/wire.hpp"
 #include "test/connector/echo_service.hpp"
 #include "test/tools/eventually.hpp"
@@ -140,22 +141,24 @@ Bytes long_request(const Guid& client, std::uint64_t number) {
 /// An echo service for clients that the test plays.
 struct Provider {
   PlayedParticipant participant;
+  calls::DdsCallPort port{participant};
   SystemClock clock;
   ThreadExecutor control{"control"};
   ThreadExecutor executor{"worker"};
   std::shared_ptr<EchoService> service = std::make_shared<EchoService>();
-  rpc::DdsServer server{participant,
-                        control,
-                        clock,
-                        std::make_shared<rpc::Service>(std::make_shared<Echo::Skeleton>(service),
-                                                       executor, clock, rpc::Service::Options{}),
-                        {.foreign_clients = true}};
+  rpc::RemoteServer server{port,
+                           control,
+                           clock,
+                           std::make_shared<rpc::Service>(std::make_shared<Echo::Skeleton>(service),
+                                                          executor, clock, rpc::Service::Options{}),
+                           {.foreign_clients = true}};
 };
 
 }  // namespace
 
 TEST_CASE("a request that comes at the moment in which its client leaves keeps nobody busy") {
   PlayedParticipant participant;
+  calls::DdsCallPort port(participant);
   SystemClock clock;
   ThreadExecutor control("control");
   constexpr std::size_t kNeverFull = 1 << 24;
@@ -164,7 +167,7 @@ TEST_CASE("a request that comes at the moment in which its client leaves keeps n
   options.queue = kNeverFull;
   const auto service = std::make_shared<rpc::Service>(
       std::make_shared<Echo::Skeleton>(std::make_shared<EchoService>()), executor, clock, options);
-  rpc::DdsServer server(participant, control, clock, service, {});
+  rpc::RemoteServer server(port, control, clock, service, {});
   for (int round = 0; round < 100; ++round) {
     const Guid client = Guid::random();
     participant.request(client, open_request(client));

@@ -63,7 +63,7 @@ const OperationInfo* operation_of(const rpc::Service& service, std::string_view 
 }
 
 /// Requests as a thread takes them that waits for them: `bring` says what comes while it does.
-struct Requests final : dds::CallerDelivery {
+struct Requests final : calls::CallerDelivery {
   void lend() override {}
   void pause() override {}
   void take_back() override { ++given_back; }

@@ -4,8 +4,9 @@
 #include <future>
 #include <mutex>
 
-#include "rpc/client/dds_channel.hpp"
-#include "rpc/server/dds_server.hpp"
+#include "call_port/dds_call_port.hpp"
+#include "rpc/client/remote_channel.hpp"
+#include "rpc/server/remote_server.hpp"
 #include "rpc/service/call_journal.hpp"
 #include "skein/error.hpp"
 #include "skein/introspection.idl.hpp"
@@ -20,7 +21,7 @@ using ::test::LouderEcho;
 
 namespace {
 
-/// How the writers of a SlowParticipant fare.
+/// How the writers of a SlowParticipant, or the senders of a SlowPort, fare.
 class Valve {
  public:
   enum class Mode { Open, Holding, HoldingFirst, Full };
@@ -63,7 +64,7 @@ class Valve {
   }
 
   std::atomic<int> writers{0};  // that have not been destroyed
-  std::atomic<std::chrono::milliseconds> a_try{dds::Qos().max_blocking};
+  std::atomic<std::chrono::milliseconds> a_try{calls::kPatience};
 
  private:
   mutable std::mutex mutex_;
@@ -88,14 +89,9 @@ class SlowWriter final : public dds::Writer {
     valve_.pass();
     writer_->write(cdr, key);
   }
-  void write_within(const std::function<Duration()>& left,
-                    std::span<const std::byte> cdr) override {
-    valve_.pass(left());
-    writer_->write(cdr);
-  }
   void dispose(const dds::KeyHash& key) override { writer_->dispose(key); }
   bool wait_for_acknowledgments(std::chrono::milliseconds timeout) override {
-    return !valve_.full() && writer_->wait_for_acknowledgments(timeout);
+    return writer_->wait_for_acknowledgments(timeout);
   }
   Guid guid() const override { return writer_->guid(); }
   std::vector<Guid> matched_readers() const override { return writer_->matched_readers(); }
@@ -127,14 +123,77 @@ class SlowParticipant final : public dds::Participant {
   std::unique_ptr<dds::Participant> participant_;
 };
 
+class SlowSender final : public calls::Sender {
+ public:
+  SlowSender(std::unique_ptr<calls::Sender> sender, Valve& valve)
+      : sender_(std::move(sender)), valve_(valve) {
+    ++valve_.writers;
+  }
+  ~SlowSender() override {
+    sender_.reset();
+    --valve_.writers;
+  }
+  void send(std::span<const std::byte> message, const std::function<Duration()>& left) override {
+    valve_.pass(left ? left() : Duration::max());
+    sender_->send(message);
+  }
+  bool send_lending(std::span<const std::byte>, const std::shared_ptr<LoanMemory>&,
+                    std::size_t) override {
+    return false;
+  }
+  bool await_taken(std::chrono::milliseconds timeout) override {
+    return !valve_.full() && sender_->await_taken(timeout);
+  }
+  Guid identity() const override { return sender_->identity(); }
+
+ private:
+  std::unique_ptr<calls::Sender> sender_;
+  Valve& valve_;
+};
+
+/// A port whose senders go through a valve.
+class SlowPort final : public calls::ProviderPort, public calls::ClientPort {
+ public:
+  explicit SlowPort(dds::Vendor& vendor) : participant_(vendor.create_participant({})) {}
+
+  std::unique_ptr<calls::Receiver> receive_requests(const calls::Address& address, bool foreign,
+                                                    calls::Listener listener) override {
+    return port_.receive_requests(address, foreign, std::move(listener));
+  }
+  std::unique_ptr<calls::Sender> send_replies(const calls::Address& address, const Guid& client,
+                                              calls::PeerListener on_peer) override {
+    return slow(port_.send_replies(address, client, std::move(on_peer)));
+  }
+  std::unique_ptr<calls::Sender> send_requests(const calls::Address& address,
+                                               calls::PeerListener on_peer,
+                                               std::function<void()> on_full) override {
+    return slow(port_.send_requests(address, std::move(on_peer), std::move(on_full)));
+  }
+  std::unique_ptr<calls::Receiver> receive_replies(const calls::Address& address,
+                                                   const Guid& client,
+                                                   calls::Listener listener) override {
+    return port_.receive_replies(address, client, std::move(listener));
+  }
+
+  Valve valve;
+
+ private:
+  std::unique_ptr<calls::Sender> slow(std::unique_ptr<calls::Sender> sender) {
+    return std::make_unique<SlowSender>(std::move(sender), valve);
+  }
+
+  const std::unique_ptr<dds::Participant> participant_;
+  calls::DdsCallPort port_{*participant_};
+};
+
 /// A server and a client of it, each with a valve of its own.
 struct Pair {
   Pair() {
-    rpc::DdsChannel::Options options;
+    rpc::RemoteChannel::Options options;
     options.peer = "the server";
     options.timeout = 20s;
-    channel = rpc::DdsChannel::open(calling, control, continuations, clock,
-                                    {"test/LouderEcho", service->id()}, options);
+    channel = rpc::RemoteChannel::open(calling, control, continuations, clock,
+                                       {"test/LouderEcho", service->id()}, options);
   }
   ~Pair() {
     serving.valve.set(Valve::Mode::Open);
@@ -146,8 +205,8 @@ struct Pair {
   const std::shared_ptr<SystemClock> clock = std::make_shared<SystemClock>();
   dds::LoopbackNetwork network{*clock};
   const std::shared_ptr<dds::Vendor> vendor = network.vendor();
-  SlowParticipant serving{*vendor};
-  SlowParticipant calling{*vendor};
+  SlowPort serving{*vendor};
+  SlowPort calling{*vendor};
   const std::shared_ptr<ThreadExecutor> continuations =
       std::make_shared<ThreadExecutor>("continue");
   ThreadExecutor control{"control"};
@@ -156,9 +215,9 @@ struct Pair {
   const std::shared_ptr<rpc::Service> service =
       std::make_shared<rpc::Service>(std::make_shared<LouderEcho::Skeleton>(implementation),
                                      executor, *clock, rpc::Service::Options{});
-  std::unique_ptr<rpc::DdsServer> server = std::make_unique<rpc::DdsServer>(
-      serving, control, *clock, service, rpc::DdsServer::Options{});
-  std::shared_ptr<rpc::DdsChannel> channel;
+  std::unique_ptr<rpc::RemoteServer> server = std::make_unique<rpc::RemoteServer>(
+      serving, control, *clock, service, rpc::RemoteServer::Options{});
+  std::shared_ptr<rpc::RemoteChannel> channel;
 };
 
 const OperationInfo& operation_named(std::string_view name) {
@@ -305,7 +364,7 @@ TEST_CASE_METHOD(
     Pair, "what waits for room is bounded: a client may have half of it, and the rest is counted") {
   serving.valve.set(Valve::Mode::Full);
   constexpr std::size_t kSize = 16 << 20;
-  constexpr std::size_t kFit = rpc::DdsServer::kMaxUnsent / 2 / kSize;
+  constexpr std::size_t kFit = rpc::RemoteServer::kMaxUnsent / 2 / kSize;
   const std::vector<std::uint8_t> content(kSize);
   std::vector<Call<std::vector<std::uint8_t>>> calls;
   for (std::size_t i = 0; i <= kFit; ++i) calls.push_back(echo().async_echo_octets(content));

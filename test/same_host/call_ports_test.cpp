@@ -21,9 +21,6 @@ using namespace std::chrono_literals;
 
 namespace {
 
-const dds::Topic kRequests{"Test_Request", "Test_Request"};
-const dds::Topic kReplies{"Test_Reply", "Test_Reply"};
-
 Guid participant() { return Guid::random().participant(); }
 
 /// A provider's identity begins with its participant's.
@@ -33,11 +30,7 @@ Guid provider_of(const Guid& participant) {
   return provider;
 }
 
-dds::Qos in_partition(const Guid& peer) {
-  dds::Qos qos;
-  qos.partitions = {peer.hex()};
-  return qos;
-}
+calls::Address at(const Guid& provider) { return {"test/Desk", provider}; }
 
 std::vector<std::byte> message(const std::string& text) {
   std::vector<std::byte> content{std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}};
@@ -49,7 +42,7 @@ std::string text_of(std::span<const std::byte> cdr) {
   return {reinterpret_cast<const char*>(cdr.data()) + 4, cdr.size() - 4};
 }
 
-/// What a reader or a writer was told, in order.
+/// What a receiver or a sender was told, in order.
 class Story {
  public:
   void add(std::string line) {
@@ -62,38 +55,32 @@ class Story {
       return lines_ == expected;
     });
   }
-  dds::ReaderListener reader() {
-    dds::ReaderListener listener;
-    listener.on_data = [this](dds::Reader& reader) {
-      reader.take([this](const dds::Sample& sample) {
-        {
-          std::lock_guard lock(mutex_);
-          last_writer_ = sample.writer;
-        }
-        add(text_of(sample.cdr));
-      });
-    };
-    listener.on_matched = matched();
-    return listener;
+  calls::Listener receiver() {
+    return {[this](const calls::Message& message) {
+              {
+                std::lock_guard lock(mutex_);
+                last_sender_ = message.sender;
+              }
+              add(text_of(message.bytes));
+            },
+            sender()};
   }
-  dds::WriterListener writer() { return {matched()}; }
+  calls::PeerListener sender() {
+    return [this](const Guid&, bool found) { add(found ? "found" : "gone"); };
+  }
 
   /// Nothing more is taken while the result lives.
   std::unique_lock<std::mutex> hold_up() { return std::unique_lock(mutex_); }
 
-  Guid last_writer() {
+  Guid last_sender() {
     std::lock_guard lock(mutex_);
-    return last_writer_;
+    return last_sender_;
   }
 
  private:
-  std::function<void(const Guid&, bool)> matched() {
-    return [this](const Guid&, bool matched) { add(matched ? "matched" : "gone"); };
-  }
-
   std::mutex mutex_;
   std::vector<std::string> lines_;
-  Guid last_writer_;
+  Guid last_sender_;
 };
 
 /// Does with every memory that this process shares what a hostile peer would.
@@ -128,12 +115,23 @@ std::size_t most_resident_kib() {
 
 struct Pair {
   const Guid id = provider_of(participant());
+  const Guid client = participant();
   Meeting meeting;
   ProviderPort providers{meeting, {id.participant()}};
-  ClientPort clients{meeting, {participant()}};
+  ClientPort clients{meeting, {client}};
   Story at_provider;
-  std::unique_ptr<dds::Reader> requests =
-      providers.create_reader(kRequests, in_partition(id), at_provider.reader());
+  std::unique_ptr<calls::Receiver> requests =
+      providers.receive_requests(at(id), false, at_provider.receiver());
+
+  auto send_requests(calls::PeerListener on_peer = {}) {
+    return clients.send_requests(at(id), std::move(on_peer));
+  }
+  auto receive_replies(const calls::Sender& request, calls::Listener listener) {
+    return clients.receive_replies(at(id), request.identity(), std::move(listener));
+  }
+  auto send_replies(const calls::Sender& request, calls::PeerListener on_peer = {}) {
+    return providers.send_replies(at(id), request.identity(), std::move(on_peer));
+  }
 };
 
 }  // namespace
@@ -142,47 +140,42 @@ TEST_CASE("a request reaches the provider, and its reply the client alone that h
   Pair pair;
   Story at_client;
   Story at_other;
-  Story of_writer;
-  const auto request =
-      pair.clients.create_writer(kRequests, in_partition(pair.id), of_writer.writer());
-  const auto replies =
-      pair.clients.create_reader(kReplies, in_partition(request->guid()), at_client.reader());
-  const auto other = pair.clients.create_writer(kRequests, in_partition(pair.id), {});
-  const auto other_replies =
-      pair.clients.create_reader(kReplies, in_partition(other->guid()), at_other.reader());
-  CHECK(of_writer.becomes({"matched"}));
-  CHECK(request->guid() != other->guid());
-  CHECK(request->guid().participant() == pair.clients.guid());
-  REQUIRE(pair.at_provider.becomes({"matched", "matched"}));
-  request->write(message("question"));
-  REQUIRE(pair.at_provider.becomes({"matched", "matched", "question"}));
-  CHECK(pair.at_provider.last_writer() == request->guid());
-  const auto reply =
-      pair.providers.create_writer(kReplies, in_partition(request->guid()), of_writer.writer());
-  reply->write(message("answer"));
-  CHECK(at_client.becomes({"matched", "answer"}));
-  CHECK(at_client.last_writer().participant() == pair.id.participant());
-  CHECK(at_other.becomes({"matched"}));
-  CHECK(request->wait_for_acknowledgments(1s));
+  Story of_sender;
+  const auto request = pair.send_requests(of_sender.sender());
+  const auto replies = pair.receive_replies(*request, at_client.receiver());
+  const auto other = pair.send_requests();
+  const auto other_replies = pair.receive_replies(*other, at_other.receiver());
+  CHECK(of_sender.becomes({"found"}));
+  CHECK(request->identity() != other->identity());
+  CHECK(request->identity().participant() == pair.client);
+  REQUIRE(pair.at_provider.becomes({"found", "found"}));
+  request->send(message("question"));
+  REQUIRE(pair.at_provider.becomes({"found", "found", "question"}));
+  CHECK(pair.at_provider.last_sender() == request->identity());
+  const auto reply = pair.send_replies(*request, of_sender.sender());
+  reply->send(message("answer"));
+  CHECK(at_client.becomes({"found", "answer"}));
+  CHECK(at_client.last_sender().participant() == pair.id.participant());
+  CHECK(at_other.becomes({"found"}));
+  CHECK(request->await_taken(1s));
 }
 
 TEST_CASE("a connection that has carried small calls keeps at most 64 KiB of memory") {
   Pair pair;
   Story at_client;
-  const auto request = pair.clients.create_writer(kRequests, in_partition(pair.id), {});
-  const auto replies =
-      pair.clients.create_reader(kReplies, in_partition(request->guid()), at_client.reader());
-  std::vector<std::string> at_provider{"matched"};
-  std::vector<std::string> received{"matched"};
+  const auto request = pair.send_requests();
+  const auto replies = pair.receive_replies(*request, at_client.receiver());
+  std::vector<std::string> at_provider{"found"};
+  std::vector<std::string> received{"found"};
   REQUIRE(pair.at_provider.becomes(at_provider));
-  const auto reply = pair.providers.create_writer(kReplies, in_partition(request->guid()), {});
+  const auto reply = pair.send_replies(*request);
   for (int i = 0; i < 1000; ++i) {
-    request->write(message(std::string(1024, 'q')));
+    request->send(message(std::string(1024, 'q')));
     at_provider.push_back(std::string(1024, 'q'));
-    REQUIRE(request->wait_for_acknowledgments(20s));
-    reply->write(message(std::string(1024, 'a')));
+    REQUIRE(request->await_taken(20s));
+    reply->send(message(std::string(1024, 'a')));
     received.push_back(std::string(1024, 'a'));
-    REQUIRE(reply->wait_for_acknowledgments(20s));
+    REQUIRE(reply->await_taken(20s));
   }
   CHECK(pair.at_provider.becomes(at_provider));
   CHECK(at_client.becomes(received));
@@ -194,79 +187,67 @@ TEST_CASE("a connection that has carried small calls keeps at most 64 KiB of mem
 TEST_CASE("whichever side goes, the other one is told once, after all that was sent") {
   Pair pair;
   Story at_client;
-  Story of_writer;
-  auto request = pair.clients.create_writer(kRequests, in_partition(pair.id), of_writer.writer());
-  auto replies =
-      pair.clients.create_reader(kReplies, in_partition(request->guid()), at_client.reader());
-  request->write(message("last"));
+  Story of_sender;
+  auto request = pair.send_requests(of_sender.sender());
+  auto replies = pair.receive_replies(*request, at_client.receiver());
+  request->send(message("last"));
   if (GENERATE(true, false)) {
     replies.reset();
     request.reset();
-    CHECK(pair.at_provider.becomes({"matched", "last", "gone"}));
+    CHECK(pair.at_provider.becomes({"found", "last", "gone"}));
   } else {
-    REQUIRE(pair.at_provider.becomes({"matched", "last"}));
+    REQUIRE(pair.at_provider.becomes({"found", "last"}));
     pair.requests.reset();
-    CHECK(at_client.becomes({"matched", "gone"}));
-    CHECK(of_writer.becomes({"matched", "gone"}));
-    CHECK_THROWS_AS(request->write(message("more")), Unavailable);
+    CHECK(at_client.becomes({"found", "gone"}));
+    CHECK(of_sender.becomes({"found", "gone"}));
+    CHECK_THROWS_AS(request->send(message("more")), Unavailable);
   }
 }
 
 TEST_CASE(
-    "a writer whose provider is not there is refused, and one whose client has gone is mute") {
+    "a sender whose provider is not there is refused, and one whose client has gone is mute") {
   Pair pair;
-  CHECK_THROWS_AS(pair.clients.create_writer(kRequests, in_partition(Guid::random()), {}),
-                  Unavailable);
-  CHECK_THROWS_AS(pair.clients.create_writer(kRequests, {}, {}), InvalidArgument);
-  const auto mute = pair.providers.create_writer(kReplies, in_partition(Guid::random()), {});
-  CHECK_NOTHROW(mute->write(message("nobody")));
-  CHECK(mute->matched_readers().empty());
+  CHECK_THROWS_AS(pair.clients.send_requests(at(Guid::random()), {}), Unavailable);
+  Story of_mute;
+  const auto mute = pair.providers.send_replies(at(pair.id), Guid::random(), of_mute.sender());
+  CHECK_NOTHROW(mute->send(message("nobody")));
+  CHECK(of_mute.becomes({}));
 }
 
 TEST_CASE("who takes nothing is told of as overloaded, and gets the rest once it takes again") {
   Pair pair;
   std::mutex gate;
   std::atomic<std::size_t> taken = 0;
-  const auto request = pair.clients.create_writer(kRequests, in_partition(pair.id), {});
-  dds::ReaderListener slow;
-  slow.on_data = [&](dds::Reader& reader) {
+  const auto request = pair.send_requests();
+  calls::Listener slow{[&](const calls::Message&) {
     std::lock_guard lock(gate);
-    taken += reader.take([](const dds::Sample&) {});
-  };
-  const auto replies =
-      pair.clients.create_reader(kReplies, in_partition(request->guid()), std::move(slow));
-  request->write(message("hello"));
-  REQUIRE(pair.at_provider.becomes({"matched", "hello"}));
-  auto qos = in_partition(request->guid());
-  qos.max_blocking = 5ms;
-  std::size_t waited = 0;
-  dds::WriterListener listener;
-  listener.on_full = [&] { ++waited; };
-  const auto reply = pair.providers.create_writer(kReplies, qos, std::move(listener));
+    ++taken;
+  }};
+  const auto replies = pair.receive_replies(*request, std::move(slow));
+  request->send(message("hello"));
+  REQUIRE(pair.at_provider.becomes({"found", "hello"}));
+  const auto reply = pair.send_replies(*request);
   std::size_t written = 0;
   {
     std::lock_guard lock(gate);
     const auto large = message(std::string(40'000, 'x'));
-    for (; written < 2; ++written) reply->write(large);
-    CHECK(waited == 0);
+    for (; written < 2; ++written) reply->send(large);
     CHECK_THROWS_AS(
         [&] {
-          for (; written < 1000; ++written) reply->write(large);
+          for (; written < 1000; ++written) reply->send(large);
         }(),
         Overloaded);
-    CHECK(waited > 0);
-    CHECK_FALSE(reply->wait_for_acknowledgments(0ms));
+    CHECK_FALSE(reply->await_taken(0ms));
   }
-  CHECK(reply->wait_for_acknowledgments(20s));
-  reply->write(message("after"));
+  CHECK(reply->await_taken(20s));
+  reply->send(message("after"));
   CHECK(eventually([&] { return taken == written + 1; }));
 }
 
 TEST_CASE("a message waits for room no longer than its sender has time") {
   Pair pair;
-  auto qos = in_partition(pair.id);
-  qos.max_blocking = 1h;
-  const auto request = pair.clients.create_writer(kRequests, qos, {});
+  std::size_t waited = 0;
+  const auto request = pair.clients.send_requests(at(pair.id), {}, [&] { ++waited; });
   const auto large = message(std::string(40'000, 'x'));
   std::size_t asked = 0;
   const auto left = [&] {
@@ -274,41 +255,25 @@ TEST_CASE("a message waits for room no longer than its sender has time") {
     return Duration::zero();
   };
   const auto holds_up = pair.at_provider.hold_up();
-  request->write_within(left, large);
+  request->send(large, left);
   CHECK(asked == 0);
+  CHECK(waited == 0);
   CHECK_THROWS_AS(
       [&] {
-        for (int i = 0; i < 1000; ++i) request->write_within(left, large);
+        for (int i = 0; i < 1000; ++i) request->send(large, left);
       }(),
       Overloaded);
   CHECK(asked == 1);
+  CHECK(waited == 1);
 }
 
-TEST_CASE("what is no message is dropped and counted, and a sample can be kept") {
+TEST_CASE("what is no message is dropped and counted") {
   Pair pair;
-  const auto request = pair.clients.create_writer(kRequests, in_partition(pair.id), {});
-  std::shared_ptr<const void> kept;
-  std::span<const std::byte> content;
-  std::atomic<bool> came = false;
-  dds::ReaderListener keeping;
-  keeping.on_data = [&](dds::Reader& reader) {
-    reader.take([&](const dds::Sample& sample) {
-      kept = sample.keep();
-      content = sample.cdr;
-      came = true;
-    });
-  };
-  const auto replies =
-      pair.clients.create_reader(kReplies, in_partition(request->guid()), std::move(keeping));
-  request->write(std::vector<std::byte>{std::byte{9}, std::byte{9}, std::byte{9}, std::byte{9}});
-  request->write(message("good"));
-  CHECK(pair.at_provider.becomes({"matched", "good"}));
-  CHECK(pair.requests->counters().malformed == 1);
-  const auto reply = pair.providers.create_writer(kReplies, in_partition(request->guid()), {});
-  reply->write(message("first"));
-  REQUIRE(eventually([&] { return came.load(); }));
-  for (int i = 0; i < 100; ++i) request->write(message("more"));
-  CHECK(text_of(content) == "first");
+  const auto request = pair.send_requests();
+  request->send(std::vector<std::byte>(4, std::byte{9}));
+  request->send(message("good"));
+  CHECK(pair.at_provider.becomes({"found", "good"}));
+  CHECK(pair.requests->malformed() == 1);
 }
 
 TEST_CASE("a provider that has damaged what it shared is not met there again") {
@@ -319,24 +284,22 @@ TEST_CASE("a provider that has damaged what it shared is not met there again") {
   meeting.offer(
       id, id, [] {}, [&](std::shared_ptr<Link> made) { link = std::move(made); });
   Story at_client;
-  const auto request = clients.create_writer(kRequests, in_partition(id), {});
-  const auto replies =
-      clients.create_reader(kReplies, in_partition(request->guid()), at_client.reader());
-  REQUIRE(at_client.becomes({"matched"}));
+  const auto request = clients.send_requests(at(id), {});
+  const auto replies = clients.receive_replies(at(id), request->identity(), at_client.receiver());
+  REQUIRE(at_client.becomes({"found"}));
   damage_replies();
-  CHECK(at_client.becomes({"matched", "gone"}));
-  CHECK_THROWS_WITH(clients.create_writer(kRequests, in_partition(id), {}),
-                    Catch::Contains("has damaged the memory"));
+  CHECK(at_client.becomes({"found", "gone"}));
+  CHECK_THROWS_WITH(clients.send_requests(at(id), {}), Catch::Contains("has damaged the memory"));
   meeting.withdraw(id);
 }
 
 TEST_CASE("who waits until all is taken is let go where the other side damages the memory") {
   Pair pair;
-  const auto request = pair.clients.create_writer(kRequests, in_partition(pair.id), {});
-  request->write(message("hello"));
-  REQUIRE(pair.at_provider.becomes({"matched", "hello"}));
-  REQUIRE(request->wait_for_acknowledgments(20s));
+  const auto request = pair.send_requests();
+  request->send(message("hello"));
+  REQUIRE(pair.at_provider.becomes({"found", "hello"}));
+  REQUIRE(request->await_taken(20s));
   damage([](RingState& requests, RingState&) { requests.read = 12; });
-  CHECK_FALSE(request->wait_for_acknowledgments(1h));
-  CHECK_THROWS_AS(request->write(message("more")), Unavailable);
+  CHECK_FALSE(request->await_taken(1h));
+  CHECK_THROWS_AS(request->send(message("more")), Unavailable);
 }

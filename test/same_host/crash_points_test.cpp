@@ -38,17 +38,10 @@ using namespace std::chrono_literals;
 
 namespace {
 
-const dds::Topic kRequests{"Test_Request", "Test_Request"};
-const dds::Topic kReplies{"Test_Reply", "Test_Reply"};
-
 /// The thread that makes it is followed from there to its next one.
 constexpr int kMark = SIGUSR1;
 
-dds::Qos in_partition(const Guid& peer) {
-  dds::Qos qos;
-  qos.partitions = {peer.hex()};
-  return qos;
-}
+calls::Address at(const Guid& provider) { return {"test/Desk", provider}; }
 
 std::vector<std::byte> message(const std::string& text) {
   std::vector<std::byte> content{std::byte{0}, std::byte{1}, std::byte{0}, std::byte{0}};
@@ -68,36 +61,33 @@ class Provider {
  public:
   Provider(const Guid& id, std::function<void()> on_request)
       : on_request_(std::move(on_request)), ports_(meeting_, {id.participant()}) {
-    dds::ReaderListener listener;
-    listener.on_data = [this](dds::Reader& reader) { answer(reader); };
-    listener.on_matched = [this](const Guid& client, bool matched) {
-      if (!matched) forget(client);
-    };
-    reader_ = ports_.create_reader(kRequests, in_partition(id), std::move(listener));
+    receiver_ = ports_.receive_requests(at(id), false,
+                                        {[this](const calls::Message& request) { answer(request); },
+                                         [this](const Guid& client, bool found) {
+                                           if (!found) forget(client);
+                                         }});
   }
 
   std::size_t clients() const {
     std::lock_guard lock(mutex_);
-    return writers_.size();
+    return senders_.size();
   }
   bool heard_nonsense() const { return nonsense_; }
 
  private:
-  void answer(dds::Reader& reader) {
+  void answer(const calls::Message& request) {
     on_request_();
-    reader.take([this](const dds::Sample& sample) {
-      if (text_of(sample.cdr) != kQuestion) nonsense_ = true;
-      std::lock_guard lock(mutex_);
-      auto& writer = writers_[sample.writer];
-      if (!writer) writer = ports_.create_writer(kReplies, in_partition(sample.writer), {});
-      writer->write(message(kAnswer));
-    });
+    if (text_of(request.bytes) != kQuestion) nonsense_ = true;
+    std::lock_guard lock(mutex_);
+    auto& sender = senders_[request.sender];
+    if (!sender) sender = ports_.send_replies({}, request.sender);
+    sender->send(message(kAnswer));
   }
   void forget(const Guid& client) {
-    std::unique_ptr<dds::Writer> gone;
+    std::unique_ptr<calls::Sender> gone;
     std::lock_guard lock(mutex_);
-    gone = std::move(writers_[client]);
-    writers_.erase(client);
+    gone = std::move(senders_[client]);
+    senders_.erase(client);
   }
 
   const std::function<void()> on_request_;
@@ -105,8 +95,8 @@ class Provider {
   mutable std::mutex mutex_;
   Meeting meeting_;
   ProviderPort ports_;
-  std::map<Guid, std::unique_ptr<dds::Writer>> writers_;
-  std::unique_ptr<dds::Reader> reader_;
+  std::map<Guid, std::unique_ptr<calls::Sender>> senders_;
+  std::unique_ptr<calls::Receiver> receiver_;
 };
 
 enum class Outcome { Answered, Ended, Nonsense };
@@ -115,27 +105,22 @@ enum class Outcome { Answered, Ended, Nonsense };
 class Client {
  public:
   explicit Client(const Guid& provider) : ports_(meeting_, {Guid::random().participant()}) {
-    dds::WriterListener listener;
-    listener.on_matched = [this](const Guid&, bool matched) {
-      if (!matched) ended_ = true;
-    };
-    writer_ = ports_.create_writer(kRequests, in_partition(provider), std::move(listener));
-    dds::ReaderListener reader;
-    reader.on_data = [this](dds::Reader& from) {
-      from.take([this](const dds::Sample& sample) {
-        (text_of(sample.cdr) == kAnswer ? answers_ : nonsense_)++;
-      });
-      delivery_->wake();  // The answer to the first call may be taken by another thread.
-    };
-    reader_ = ports_.create_reader(kReplies, in_partition(writer_->guid()), std::move(reader));
-    delivery_ = reader_->caller_delivery();
+    sender_ = ports_.send_requests(at(provider), [this](const Guid&, bool found) {
+      if (!found) ended_ = true;
+    });
+    receiver_ = ports_.receive_replies(
+        at(provider), sender_->identity(), {[this](const calls::Message& reply) {
+          (text_of(reply.bytes) == kAnswer ? answers_ : nonsense_)++;
+          delivery_->wake();  // The answer to the first call may be taken by another thread.
+        }});
+    delivery_ = receiver_->caller_delivery();
   }
 
   Outcome call() {
     const int before = answers_ + nonsense_;
     delivery_->lend();
     try {
-      writer_->write(message(kQuestion));
+      sender_->send(message(kQuestion));
     } catch (const Error&) {
       return Outcome::Ended;
     }
@@ -153,9 +138,9 @@ class Client {
   std::atomic<int> answers_{0};
   std::atomic<int> nonsense_{0};
   std::atomic<bool> ended_{false};
-  std::unique_ptr<dds::Writer> writer_;
-  std::shared_ptr<dds::CallerDelivery> delivery_;
-  std::unique_ptr<dds::Reader> reader_;
+  std::unique_ptr<calls::Sender> sender_;
+  std::shared_ptr<calls::CallerDelivery> delivery_;
+  std::unique_ptr<calls::Receiver> receiver_;
 };
 
 std::unique_ptr<Client> connect(const Guid& provider) {

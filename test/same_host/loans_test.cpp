@@ -81,11 +81,11 @@ std::shared_ptr<LoanMemory> memory_with(char content, std::size_t size = 8192) {
   return memory;
 }
 
-bool holds(const dds::LentValue& lent, char content) {
+bool holds(const calls::LentValue& lent, char content) {
   return lent.value.front() == std::byte(content) && lent.value.back() == std::byte(content);
 }
 
-bool cannot_be_read(const std::optional<dds::LentValue>& lent) {
+bool cannot_be_read(const std::optional<calls::LentValue>& lent) {
   return lent && lent->value.empty() && !lent->use;
 }
 
@@ -95,7 +95,7 @@ TEST_CASE("the memory goes to the other side once, and is read until each loan o
   Ends ends;
   const auto memory = memory_with('a');
   CHECK_FALSE(memory->is_read());
-  std::vector<std::optional<dds::LentValue>> lent;
+  std::vector<std::optional<calls::LentValue>> lent;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto note = ends.lend(memory, 40 + i);
     CHECK(memory->is_read());  // it is on its way
@@ -194,7 +194,7 @@ TEST_CASE("a provider that was killed reads nothing any more") {
 TEST_CASE("a memory that nobody reads makes room for another one, one that is read does not") {
   Ends ends;
   std::vector<std::shared_ptr<LoanMemory>> memories;
-  std::vector<dds::LentValue> lent;
+  std::vector<calls::LentValue> lent;
   for (std::size_t i = 0; i <= kLoans; ++i)
     memories.push_back(memory_with(static_cast<char>('a' + i)));
   for (std::size_t i = 0; i < kLoans; ++i) {

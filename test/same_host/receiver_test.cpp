@@ -28,7 +28,7 @@ namespace {
 /// Writes down what comes.
 struct Notes final : Inbox {
   void on_begin(Link& link) override { note(link, "begin"); }
-  void on_message(Link& link, std::span<const std::byte> message, Turn& turn) override {
+  void on_message(Link& link, std::span<const std::byte> message, calls::Turn& turn) override {
     const std::string text(reinterpret_cast<const char*>(message.data()), message.size());
     note(link, text);
     if (text == "long") {
@@ -78,7 +78,7 @@ struct OneCoreService final : Inbox {
   }
 
   void on_begin(Link&) override {}
-  void on_message(Link& link, std::span<const std::byte>, Turn& turn) override {
+  void on_message(Link& link, std::span<const std::byte>, calls::Turn& turn) override {
     taker = std::this_thread::get_id();
     eventually([&] { return may_answer.load(); });
     if (&link == connections[2].server.get() && !last_may_answer && turn.leave()) {
@@ -141,8 +141,8 @@ struct ReceivingHost {
   ~ReceivingHost() { meeting.withdraw(provider); }
 
   /// Of what the client brings.
-  std::shared_ptr<dds::CallerDelivery> delivery(const Guid& client) {
-    std::shared_ptr<dds::CallerDelivery> found;
+  std::shared_ptr<calls::CallerDelivery> delivery(const Guid& client) {
+    std::shared_ptr<calls::CallerDelivery> found;
     REQUIRE(eventually([&] {
       std::lock_guard lock(mutex);
       found = deliveries[client];
@@ -153,7 +153,7 @@ struct ReceivingHost {
 
   const Guid provider = Guid::random();
   std::mutex mutex;
-  std::map<Guid, std::shared_ptr<dds::CallerDelivery>> deliveries;
+  std::map<Guid, std::shared_ptr<calls::CallerDelivery>> deliveries;
   Notes notes;
   Receiver receiver{"test-requests", 0us, std::make_shared<Unfinished>(1 << 20)};
   Meeting meeting;
@@ -203,7 +203,7 @@ struct Hostile {
   SharedMemory theirs;
   FileDescriptor doorbell;
   std::shared_ptr<Link> link;
-  std::shared_ptr<dds::CallerDelivery> delivery;
+  std::shared_ptr<calls::CallerDelivery> delivery;
 };
 
 /// A thread that leads in the receiver's place until it is told to stop.
@@ -222,7 +222,7 @@ struct Consumer {
     return eventually([&] { return !once; });
   }
 
-  const std::shared_ptr<dds::CallerDelivery> delivery;
+  const std::shared_ptr<calls::CallerDelivery> delivery;
   std::atomic<bool> over{false};
   std::atomic<bool> once{false};
   std::thread thread{[this] {

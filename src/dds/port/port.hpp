@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "skein/clock.hpp"
-#include "skein/detail/loan_memory.hpp"
 #include "skein/detail/qos.hpp"
 #include "skein/guid.hpp"
 #include "skein/vendor.hpp"
@@ -26,16 +25,6 @@ class SampleOwner {
  public:
   virtual ~SampleOwner() = default;
   virtual std::shared_ptr<const void> keep() = 0;
-  /// What follows on this thread may take long: what comes meanwhile is taken by another one. The
-  /// sample's bytes are not valid any more then, unless kept. False where that cannot be.
-  virtual bool may_take_long() { return false; }
-};
-
-/// A value that a sample has left out, as it can be read where it lies.
-struct LentValue {
-  std::span<const std::byte> value;  ///< Empty where it cannot be read here.
-  std::size_t position = 0;          ///< Where it is missing in the sample.
-  std::shared_ptr<const void> use;   ///< The value can be read while a copy of this lives.
 };
 
 /// A received sample; `cdr` is valid only during the call that delivers it, or as long as kept.
@@ -47,7 +36,6 @@ struct Sample {
   KeyHash key;
   Guid writer;
   SampleOwner* owner = nullptr;
-  const LentValue* lent = nullptr;  ///< As valid as `cdr`.
 
   /// Keeps `cdr` valid for as long as the result lives, without a copy: for those who hand a sample
   /// to another thread. Once, and during the call only.
@@ -99,8 +87,6 @@ struct WriterListener {
   std::function<void(const KeyHash& key)> on_deadline_missed{};
   /// A reader was found that cannot be matched; once for each.
   std::function<void(const Incompatibility&)> on_incompatible{};
-  /// write() is about to wait for room; on its thread. Only by writers through shared memory.
-  std::function<void()> on_full{};
 };
 
 /// All members are thread-safe. Destroying it waits until no listener runs; not from a listener.
@@ -112,21 +98,6 @@ class Writer {
   /// Throws InvalidArgument where that is missing, Overloaded where there was no room within
   /// max_blocking, Internal with the vendor's reason otherwise.
   virtual void write(std::span<const std::byte> cdr, const KeyHash& key = {}) = 0;
-
-  /// As write(), of a sample that is worth nothing after `left`, which is asked for only if there
-  /// is no room at first. For vendors, whose max_blocking is short, the same as write().
-  virtual void write_within(const std::function<Duration()>& /*left*/,
-                            std::span<const std::byte> cdr) {
-    write(cdr);
-  }
-
-  /// As write(), of a sample that has left out `value` at `position`. False where the readers
-  /// cannot read it where it lies: nothing is written.
-  virtual bool write_lending(std::span<const std::byte> /*cdr*/,
-                             const std::shared_ptr<LoanMemory>& /*value*/,
-                             std::size_t /*position*/) {
-    return false;
-  }
 
   /// Tells the readers that the instance has ended, also those that never knew it; late joiners are
   /// told that or nothing. Keyed topics only. Without it an instance outlives its writer.
@@ -150,25 +121,6 @@ struct ReceiveCounters {
   std::uint64_t replaced = 0;
 };
 
-/// Delivery on the thread that waits for a sample, in place of the reader's own thread: a wake-up
-/// less. It may outlive its reader, and delivers nothing then. Thread-safe.
-class CallerDelivery {
- public:
-  virtual ~CallerDelivery() = default;
-  /// What comes next is for who will call deliver_until(): the reader's thread leaves it alone.
-  virtual void lend() = 0;
-  /// It is so for a while only: unless somebody calls lend() again within 20 to 40 ms, the reader's
-  /// thread takes it back.
-  virtual void pause() = 0;
-  /// What comes next is for the reader's thread.
-  virtual void take_back() = 0;
-  /// Calls the reader's listener on this thread as samples come, until `over`, which wake() makes
-  /// it look at. Returns earlier, after take_back(), where another thread is in it, or the reader
-  /// or its writer has ended.
-  virtual void deliver_until(const std::function<bool()>& over) = 0;
-  virtual void wake() = 0;
-};
-
 /// All members are thread-safe. Destroying it waits until no listener runs; not from a listener.
 class Reader {
  public:
@@ -185,9 +137,6 @@ class Reader {
 
   /// Since creation.
   virtual ReceiveCounters counters() const = 0;
-
-  /// Null where samples are delivered by threads of the reader's alone.
-  virtual std::shared_ptr<CallerDelivery> caller_delivery() { return nullptr; }
 };
 
 struct ParticipantOptions {

@@ -4,19 +4,19 @@
 #include <memory>
 #include <utility>
 
-#include "dds/port/port.hpp"
+#include "call_port/call_port.hpp"
 #include "skein/detail/channel.hpp"
 
 namespace skein::rpc {
 
-/// Lets the thread that waits for a call take its answer from the connection's reader, where nobody
+/// Lets the thread that waits for a call take its answer from the connection's receiver, if nobody
 /// else waits for what comes there. Thread-safe.
 class CallerAnswers final : public Answers {
  public:
-  explicit CallerAnswers(std::shared_ptr<dds::CallerDelivery> delivery)
+  explicit CallerAnswers(std::shared_ptr<calls::CallerDelivery> delivery)
       : delivery_(std::move(delivery)) {}
 
-  /// The reader's thread takes what comes until somebody waits again.
+  /// The port's thread takes what comes until somebody waits again.
   void hand_over() { delivery_->take_back(); }
 
   void begin(bool blocking) override {
@@ -41,14 +41,14 @@ class CallerAnswers final : public Answers {
   void leave() override { --attended_; }
 
  private:
-  // The reader's thread need not wake up for what comes, until all calls have ended.
+  // The port's thread need not wake up for what comes, until all calls have ended.
   void expect() {
     if (attended_ != 0) return;
     delivery_->lend();
     if (attended_ != 0) delivery_->take_back();
   }
 
-  const std::shared_ptr<dds::CallerDelivery> delivery_;
+  const std::shared_ptr<calls::CallerDelivery> delivery_;
   std::atomic<int> calls_{0};
   std::atomic<int> attended_{0};
   std::atomic<bool> taken_{false};  // by a thread that waits

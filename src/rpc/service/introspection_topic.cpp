@@ -24,7 +24,7 @@ AnyPublisher::AnyPublisher(dds::Participant& participant, Executor& control, con
     : control_(control), topic_(topic) {
   dds::WriterListener listener;
   listener.on_matched = [this](const Guid&, bool matched) { on_reader(matched); };
-  auto writer = rpc::SharedWriters::share(
+  auto writer = rpc::SharedUse::share(
       participant.create_writer(topic.dds_topic(), topic.qos(), std::move(listener)),
       writers_.hold());
   std::lock_guard lock(mutex_);

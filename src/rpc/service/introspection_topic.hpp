@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "dds/port/port.hpp"
-#include "rpc/wire/shared_writers.hpp"
+#include "rpc/wire/shared_use.hpp"
 #include "skein/detail/codec.hpp"
 #include "skein/error.hpp"
 #include "skein/executor.hpp"
@@ -104,7 +104,7 @@ class AnyPublisher {
   std::size_t readers_ = 0;
   std::function<void()> begin_;
   std::shared_ptr<dds::Writer> writer_;  // none once it is closed
-  rpc::SharedWriters writers_;           // which its tasks on `control` hold, too, while they run
+  rpc::SharedUse writers_;               // which its tasks on `control` hold, too, while they run
 };
 
 /// Writes an entity's values on one of these topics, while somebody reads it. Off, it costs the

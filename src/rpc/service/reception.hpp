@@ -4,8 +4,8 @@
 #include <memory>
 #include <utility>
 
+#include "call_port/call_port.hpp"
 #include "core/threads/idle_work.hpp"
-#include "dds/port/port.hpp"
 
 namespace skein::rpc {
 
@@ -18,7 +18,7 @@ class Service;
 class Reception final : public IdleWork {
  public:
   /// `service` has one thread, whose executor it outlives; `requests` brings its requests.
-  Reception(Service& service, std::shared_ptr<dds::CallerDelivery> requests)
+  Reception(Service& service, std::shared_ptr<calls::CallerDelivery> requests)
       : service_(service), requests_(std::move(requests)) {}
 
   void work_until(const std::function<bool()>& over) override;
@@ -29,7 +29,7 @@ class Reception final : public IdleWork {
 
  private:
   Service& service_;
-  const std::shared_ptr<dds::CallerDelivery> requests_;
+  const std::shared_ptr<calls::CallerDelivery> requests_;
 };
 
 }  // namespace skein::rpc

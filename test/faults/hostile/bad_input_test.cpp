@@ -4,7 +4,8 @@
 #include <random>
 #include <thread>
 
-#include "rpc/client/dds_channel.hpp"
+#include "call_port/dds_call_port.hpp"
+#include "rpc/client/remote_channel.hpp"
 #include "skein/detail/type_support.hpp"
 #include "test/faults/exposed_service.hpp"
 #include "test/faults/messages.hpp"
@@ -77,7 +78,8 @@ std::unique_ptr<dds::Writer> matched_writer(Entity& entity, const dds::Topic& to
 std::unique_ptr<dds::Writer> writer_to(Attacked& attacked) {
   dds::Qos qos;
   qos.partitions = {attacked.service.id().hex()};
-  auto writer = matched_writer(*attacked.stranger, attacked.service.address().request_topic(), qos);
+  auto writer =
+      matched_writer(*attacked.stranger, calls::request_topic(attacked.service.address()), qos);
   REQUIRE(eventually([&] {
     writer->write(unknown_operation(writer->guid()));
     return eventually([&] { return attacked.service.counters().refused > 0; }, 200ms);
@@ -175,8 +177,8 @@ class RogueServer {
         worker_.post([this, head] { answer(head); });
       });
     };
-    reader_ =
-        entity.participant().create_reader(address().request_topic(), qos, std::move(listener));
+    reader_ = entity.participant().create_reader(calls::request_topic(address()), qos,
+                                                 std::move(listener));
     registration_ = entity.broker().add_service(describe_echo(id_, "rogue"));
   }
   ~RogueServer() {
@@ -185,7 +187,7 @@ class RogueServer {
     worker_.stop();
   }
 
-  rpc::DdsAddress address() const { return {"test/LouderEcho", id_}; }
+  calls::Address address() const { return {"test/LouderEcho", id_}; }
   const Guid& id() const { return id_; }
 
   /// What the next call gets. Set before it is made.
@@ -199,7 +201,7 @@ class RogueServer {
     if (!writer_) {
       dds::Qos qos;
       qos.partitions = {head.id.client.hex()};
-      writer_ = entity_.participant().create_writer(address().reply_topic(), qos);
+      writer_ = entity_.participant().create_writer(calls::reply_topic(address()), qos);
     }
     Bytes message;
     if (head.operation == rpc::wire::kOpen) {
@@ -226,7 +228,7 @@ class RogueServer {
 
 namespace {
 
-std::shared_ptr<rpc::DdsChannel> channel_to(const RogueServer& rogue, Entity& client) {
+std::shared_ptr<rpc::RemoteChannel> channel_to(const RogueServer& rogue, Entity& client) {
   REQUIRE(eventually([&] { return client.broker().knows(rogue.id()); }));
   const auto description = [&] {
     for (const auto& known : client.broker().all()) {
@@ -235,9 +237,9 @@ std::shared_ptr<rpc::DdsChannel> channel_to(const RogueServer& rogue, Entity& cl
     throw std::runtime_error("the rogue is not known");
   }();
   const auto channel = client.connector().open_provider(*description, "", 20s);
-  const auto dds_channel = std::dynamic_pointer_cast<rpc::DdsChannel>(channel);
-  REQUIRE(dds_channel);
-  return dds_channel;
+  const auto remote_channel = std::dynamic_pointer_cast<rpc::RemoteChannel>(channel);
+  REQUIRE(remote_channel);
+  return remote_channel;
 }
 
 }  // namespace

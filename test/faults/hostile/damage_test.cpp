@@ -22,10 +22,10 @@ struct Heard {
 /// A client that writes its requests by hand, and so can damage them.
 class HandClient {
  public:
-  HandClient(dds::Participant& participant, const rpc::DdsAddress& address) {
+  HandClient(dds::Participant& participant, const calls::Address& address) {
     dds::Qos qos;
-    qos.partitions = address.partitions();
-    writer_ = participant.create_writer(address.request_topic(), qos);
+    qos.partitions = {address.provider.hex()};
+    writer_ = participant.create_writer(calls::request_topic(address), qos);
     qos.partitions = {guid().hex()};
     dds::ReaderListener listener;
     listener.on_data = [this](dds::Reader& reader) {
@@ -37,7 +37,7 @@ class HandClient {
         answers_.push_back({head, trailer ? trailer->text : ""});
       });
     };
-    reader_ = participant.create_reader(address.reply_topic(), qos, std::move(listener));
+    reader_ = participant.create_reader(calls::reply_topic(address), qos, std::move(listener));
   }
 
   Guid guid() const { return writer_->guid(); }
@@ -79,10 +79,10 @@ class Opener {
  public:
   using MakeAnswer = std::function<Bytes(const wire::RequestId&)>;
 
-  Opener(dds::Participant& participant, const rpc::DdsAddress& address, MakeAnswer make)
+  Opener(dds::Participant& participant, const calls::Address& address, MakeAnswer make)
       : participant_(participant), address_(address), make_(std::move(make)) {
     dds::Qos qos;
-    qos.partitions = address.partitions();
+    qos.partitions = {address.provider.hex()};
     dds::ReaderListener listener;
     listener.on_data = [this](dds::Reader& reader) {
       reader.take([this](const dds::Sample& sample) {
@@ -90,7 +90,7 @@ class Opener {
         worker_.post([this, id = wire::read_request_head(sample.cdr).id] { answer(id); });
       });
     };
-    reader_ = participant.create_reader(address.request_topic(), qos, std::move(listener));
+    reader_ = participant.create_reader(calls::request_topic(address), qos, std::move(listener));
   }
   ~Opener() {
     reader_.reset();
@@ -102,13 +102,13 @@ class Opener {
     if (!writer_) {
       dds::Qos qos;
       qos.partitions = {id.client.hex()};
-      writer_ = participant_.create_writer(address_.reply_topic(), qos);
+      writer_ = participant_.create_writer(calls::reply_topic(address_), qos);
     }
     writer_->write(make_(id));
   }
 
   dds::Participant& participant_;
-  const rpc::DdsAddress address_;
+  const calls::Address address_;
   const MakeAnswer make_;
   ThreadExecutor worker_{"opener"};
   std::unique_ptr<dds::Writer> writer_;
@@ -151,7 +151,7 @@ TEST_CASE("a request that was damaged on its way is answered at once, with cause
 TEST_CASE("who waited for `open` in vain hears of answers that could not be read") {
   const auto server = entity_with_lease("server", Pairing::get().server, 1000ms);
   const auto client = entity_with_lease("client", Pairing::get().client, 1000ms);
-  const rpc::DdsAddress address{"test/LouderEcho", server->broker().new_provider()};
+  const calls::Address address{"test/LouderEcho", server->broker().new_provider()};
   const Opener opener(server->participant(), address, [](const wire::RequestId& id) {
     return first(answer_to_open(id, wire::RemoteException::Ok), 20);
   });

@@ -14,7 +14,7 @@ namespace wire = rpc::wire;
 
 namespace {
 
-constexpr std::size_t kMax = rpc::DdsServer::kMaxClientsOfPeer;
+constexpr std::size_t kMax = rpc::RemoteServer::kMaxClientsOfPeer;
 
 /// Vendors need long to make thousands of writers known.
 std::size_t size_of_flood() { return Pairing::get().client->name() == "loopback" ? 3000 : 400; }
@@ -22,11 +22,11 @@ std::size_t size_of_flood() { return Pairing::get().client->name() == "loopback"
 /// A rogue that opens a session by each of its many writers.
 class Flood {
  public:
-  Flood(Entity& entity, const rpc::DdsAddress& address) {
+  Flood(Entity& entity, const calls::Address& address) {
     dds::Qos qos;
-    qos.partitions = address.partitions();
+    qos.partitions = {address.provider.hex()};
     for (std::size_t i = 0; i < size_of_flood(); ++i) {
-      writers_.push_back(entity.participant().create_writer(address.request_topic(), qos));
+      writers_.push_back(entity.participant().create_writer(calls::request_topic(address), qos));
     }
   }
 

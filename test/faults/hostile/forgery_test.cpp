@@ -4,7 +4,7 @@
 #include <future>
 #include <mutex>
 
-#include "rpc/client/dds_channel.hpp"
+#include "rpc/client/remote_channel.hpp"
 #include "test/faults/exposed_service.hpp"
 #include "test/faults/messages.hpp"
 #include "test/faults/processes.hpp"
@@ -81,11 +81,11 @@ struct Stage {
     return eventually([&] { return channel->forged() >= forged_before + count; });
   }
 
-  std::shared_ptr<rpc::DdsChannel> connect() {
+  std::shared_ptr<rpc::RemoteChannel> connect() {
     LouderEcho::Proxy any = client->connect<LouderEcho>({.provider = service.id(), .timeout = 20s});
     for (const auto& known : client->broker().all()) {
       if (known->provider != service.id().bytes) continue;
-      return std::dynamic_pointer_cast<rpc::DdsChannel>(
+      return std::dynamic_pointer_cast<rpc::RemoteChannel>(
           client->connector().open_provider(*known, "", 20s));
     }
     return nullptr;
@@ -95,7 +95,7 @@ struct Stage {
   std::unique_ptr<Entity> server;
   std::unique_ptr<Entity> client;
   ExposedService service;
-  std::shared_ptr<rpc::DdsChannel> channel;
+  std::shared_ptr<rpc::RemoteChannel> channel;
   LouderEcho::Proxy proxy;
   // After the channel: it hears no request of the connection that only found the service, and whose
   // reply reader is gone by now.
@@ -149,7 +149,8 @@ TEST_CASE_METHOD(Stage, "who listens in on a connection, and leaves, does not en
     Ear second(rogue->participant(), service.address());
     dds::Qos qos;
     qos.partitions = {ear.client().hex()};
-    const auto replies = rogue->participant().create_reader(service.address().reply_topic(), qos);
+    const auto replies =
+        rogue->participant().create_reader(calls::reply_topic(service.address()), qos);
     REQUIRE(eventually([&] { return second.matched() && replies->matched_writers().size() == 2; }));
   }
   for (int i = 0; i < 100; ++i) CHECK(proxy.label() == "echo");
@@ -160,7 +161,8 @@ TEST_CASE_METHOD(Stage, "who listens in on a connection, and leaves, does not en
 TEST_CASE_METHOD(Stage, "a request in another client's name ends none of that client's calls") {
   dds::Qos qos;
   qos.partitions = {service.id().hex()};
-  const auto writer = rogue->participant().create_writer(service.address().request_topic(), qos);
+  const auto writer =
+      rogue->participant().create_writer(calls::request_topic(service.address()), qos);
   REQUIRE(eventually([&] { return !writer->matched_readers().empty(); }));
   // What is written before the other side has found the writer may be lost.
   REQUIRE(eventually([&] {
@@ -188,7 +190,7 @@ TEST_CASE("a forged refusal of `open` does not keep a client from its provider")
   const auto server = entity_with_lease("server", Pairing::get().server, 1000ms);
   const auto client = entity_with_lease("client", Pairing::get().client, 1000ms);
   const auto rogue = entity_with_lease("rogue", Pairing::get().client, 1000ms);
-  const rpc::DdsAddress address{"test/LouderEcho", server->broker().new_provider()};
+  const calls::Address address{"test/LouderEcho", server->broker().new_provider()};
   Ear provider(server->participant(), address);
   Ear ear(rogue->participant(), address);
   const auto registration = server->broker().add_service(describe_echo(address.provider, "server"));

@@ -7,8 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "dds/port/port.hpp"
-#include "rpc/server/dds_server.hpp"
+#include "call_port/dds_call_port.hpp"
 #include "rpc/wire/wire.hpp"
 #include "skein/detail/operation.hpp"
 #include "test/tools/eventually.hpp"
@@ -18,9 +17,9 @@ namespace skein::test {
 /// Reads the requests to a provider, as anybody can.
 class Ear {
  public:
-  Ear(dds::Participant& participant, const rpc::DdsAddress& address) {
+  Ear(dds::Participant& participant, const calls::Address& address) {
     dds::Qos qos;
-    qos.partitions = address.partitions();
+    qos.partitions = {address.provider.hex()};
     dds::ReaderListener listener;
     listener.on_data = [this](dds::Reader& reader) {
       reader.take([this](const dds::Sample& sample) {
@@ -31,7 +30,7 @@ class Ear {
         heads_.push_back(head);
       });
     };
-    reader_ = participant.create_reader(address.request_topic(), qos, std::move(listener));
+    reader_ = participant.create_reader(calls::request_topic(address), qos, std::move(listener));
   }
 
   bool matched() const { return !reader_->matched_writers().empty(); }
@@ -70,10 +69,10 @@ class Ear {
 /// Writes replies to a client, as anybody can who knows its GUID.
 class Mouth {
  public:
-  Mouth(dds::Participant& participant, const rpc::DdsAddress& address, const Guid& client) {
+  Mouth(dds::Participant& participant, const calls::Address& address, const Guid& client) {
     dds::Qos qos;
     qos.partitions = {client.hex()};
-    writer_ = participant.create_writer(address.reply_topic(), qos);
+    writer_ = participant.create_writer(calls::reply_topic(address), qos);
     REQUIRE(eventually([&] { return !writer_->matched_readers().empty(); }));
   }
 

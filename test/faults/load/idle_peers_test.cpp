@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include "rpc/server/dds_server.hpp"
+#include "call_port/dds_call_port.hpp"
 #include "test/faults/messages.hpp"
 #include "test/faults/processes.hpp"
 #include "test/tools/network_space.hpp"
@@ -129,7 +129,7 @@ TEST_CASE("the capture sees what does go to those who were idle") {
   skein::dds::Qos qos;
   qos.partitions = {""};
   const auto requests = foreigner->participant().create_writer(
-      skein::rpc::DdsAddress{"test/LouderEcho", {}}.request_topic(), qos);
+      skein::calls::request_topic({"test/LouderEcho", {}}), qos);
   CHECK(eventually([&] {
     requests->write(echo_request(requests->guid()));
     return std::ranges::all_of(neighbours.idle_servers, [](ChildProcess& server) {

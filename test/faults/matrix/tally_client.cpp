@@ -12,11 +12,11 @@ using ::test::Tally;
 
 constexpr auto kConnectPatience = 30s;
 
-std::shared_ptr<rpc::DdsChannel> open_channel(Entity& entity, Duration patience) {
+std::shared_ptr<rpc::RemoteChannel> open_channel(Entity& entity, Duration patience) {
   const auto deadline = entity.clock().now() + patience;
   const auto& broker = entity.broker();
   const auto found = broker.await_service(broker.query("test::Tally"), deadline);
-  return std::dynamic_pointer_cast<rpc::DdsChannel>(
+  return std::dynamic_pointer_cast<rpc::RemoteChannel>(
       entity.connector().open_provider(*found.front(), "", deadline - entity.clock().now()));
 }
 

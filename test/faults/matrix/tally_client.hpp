@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "rpc/client/dds_channel.hpp"
+#include "rpc/client/remote_channel.hpp"
 #include "skein/entity.hpp"
 #include "tally.idl.hpp"
 #include "test/faults/journal.hpp"
@@ -64,7 +64,7 @@ class TallyClient {
   Journal& journal_;
   std::uint64_t next_;
   const bool exposed_;
-  std::shared_ptr<rpc::DdsChannel> channel_;
+  std::shared_ptr<rpc::RemoteChannel> channel_;
   std::optional<::test::Tally::Proxy> connected_;
   std::vector<Pending> pending_;
   std::uint64_t succeeded_ = 0;

@@ -9,30 +9,29 @@
 #include <vector>
 
 #include "rpc/client/caller_answers.hpp"
-#include "rpc/client/dds_channel.hpp"
-#include "rpc/wire/shared_writers.hpp"
+#include "rpc/client/remote_channel.hpp"
+#include "rpc/wire/shared_use.hpp"
 #include "rpc/wire/wire.hpp"
 #include "skein/detail/call_memory.hpp"
 #include "skein/stream.hpp"
 
 namespace skein::rpc {
 
-/// Opening and ending stand in dds_channel.cpp, calls in dds_channel_calls.cpp, what comes back in
-/// dds_channel_replies.cpp.
-struct DdsChannel::State : std::enable_shared_from_this<State> {
+/// Opening and ending stand in remote_channel.cpp, calls in remote_channel_calls.cpp, what comes
+/// back in remote_channel_replies.cpp.
+struct RemoteChannel::State : std::enable_shared_from_this<State> {
   enum class Keep { Nothing, Streams };
   struct Entered {
     std::uint64_t number = 0;
-    std::shared_ptr<dds::Writer> writer;
+    std::shared_ptr<calls::Sender> sender;
   };
   enum class Phase { Opening, Open, Lost, Closed };
 
   using Entries = std::pmr::unordered_map<std::uint64_t, std::shared_ptr<PendingCall>>;
 
-  State(dds::Participant& participant_, Executor& control_,
-        std::shared_ptr<Executor> continuations_, std::shared_ptr<Clock> clock_,
-        DdsAddress address_, Options options_)
-      : participant(participant_),
+  State(calls::ClientPort& port_, Executor& control_, std::shared_ptr<Executor> continuations_,
+        std::shared_ptr<Clock> clock_, calls::Address address_, Options options_)
+      : port(port_),
         control(control_),
         continuations(std::move(continuations_)),
         owned_clock(std::move(clock_)),
@@ -40,22 +39,22 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
         address(std::move(address_)),
         options(std::move(options_)) {}
 
-  dds::Participant& participant;
+  calls::ClientPort& port;
   Executor& control;
   const std::shared_ptr<Executor> continuations;
   const std::shared_ptr<Clock> owned_clock;
   Clock& clock;
-  const DdsAddress address;
+  const calls::Address address;
   const Options options;
 
   mutable std::mutex mutex;
   std::condition_variable changed;
   std::atomic<Phase> phase{Phase::Opening};  // changed under the lock
   std::string lost_how;
-  std::atomic<bool> retiring{false};    // the session ends with the last call on its way
-  std::shared_ptr<DdsChannel> channel;  // itself, as long as it retires
+  std::atomic<bool> retiring{false};       // the session ends with the last call on its way
+  std::shared_ptr<RemoteChannel> channel;  // itself, as long as it retires
   std::exception_ptr refusal;
-  std::vector<Guid> servers;  // their request readers
+  std::vector<Guid> servers;  // their request receivers
   std::uint64_t last_number = 0;
   std::uint64_t malformed = 0;
   std::uint64_t forged = 0;
@@ -65,9 +64,9 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
   TimerId timer = 0;                   // one for all calls: steady calls come and go without it
   Instant timer_due = Instant::max();
   Guid client;
-  SharedWriters writers;
-  std::shared_ptr<dds::Writer> requests;
-  std::shared_ptr<dds::Reader> replies;
+  SharedUse senders;
+  std::shared_ptr<calls::Sender> requests;
+  std::shared_ptr<calls::Receiver> replies;
   std::shared_ptr<CallerAnswers> answers;  // of `replies`; null where callers cannot take them
   std::shared_ptr<void> companion;
 
@@ -76,11 +75,11 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
   void await_open();
   void send_open();
 
-  // ---- on the vendor's threads
-  void on_server(const Guid& reader, bool matched);
-  void on_sample(const dds::Sample& sample);
-  bool is_provider(const Guid& writer) const;
-  void note_forged(const Guid& writer);
+  // ---- on the port's threads
+  void on_server(const Guid& receiver, bool found);
+  void on_message(const calls::Message& message);
+  bool is_provider(const Guid& sender) const;
+  void note_forged(const Guid& sender);
   void on_unreadable(std::span<const std::byte> message, const std::exception& why);
   void on_reply(std::span<const std::byte> message, const wire::ReplyHead& head);
   void note_malformed(const std::string& why);
@@ -104,11 +103,11 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
   void on_full();
   TimerId look_at(Instant deadline);
   void expire_due();
-  bool send(dds::Writer& writer, const PendingCall& call, std::uint64_t number, const void* in);
+  bool send(calls::Sender& sender, const PendingCall& call, std::uint64_t number, const void* in);
   void put_request(Bytes& message, const PendingCall& call, std::uint64_t number,
                    const void* in) const;
-  template <class Write>
-  auto in_time(const PendingCall& call, Write write) const;
+  template <class Send>
+  auto in_time(const PendingCall& call, Send send) const;
   bool is_open() const;
   std::shared_ptr<PendingCall> remove(std::uint64_t number, Keep keep = Keep::Nothing);
   void expire(std::uint64_t number);
@@ -119,7 +118,7 @@ struct DdsChannel::State : std::enable_shared_from_this<State> {
 
   // ---- ending
   void lose(const std::string& how);
-  void retire(const std::string& how, std::shared_ptr<DdsChannel> itself);
+  void retire(const std::string& how, std::shared_ptr<RemoteChannel> itself);
   void part_later();
   void part();
   void close();

@@ -4,14 +4,12 @@
 #include <memory>
 #include <utility>
 
-#include "dds/port/port.hpp"
-
 namespace skein::rpc {
 
-/// Lets the owner of writers that other threads use, too, wait until the last of them is gone: no
-/// writer may outlive its participant. A thread holds the pointer for as long as it is inside the
-/// writer. What the owner hands out it guards itself.
-class SharedWriters {
+/// Lets the owner of senders or writers that other threads use, too, wait until the last of them is
+/// gone: none may outlive its port. A thread holds the pointer for as long as it is inside one.
+/// What the owner hands out it guards itself.
+class SharedUse {
  public:
   class Alive {
    public:
@@ -25,16 +23,17 @@ class SharedWriters {
   };
   using Hold = std::shared_ptr<const Alive>;
 
-  /// For whoever is about to create a writer, or to use the owner: await_end() waits for it. Who
+  /// For whoever is about to make one, or to use the owner: await_end() waits for it. Who
   /// may come too late for that keeps a weak pointer to it. Not after await_end().
   Hold hold() const { return alive_; }
 
-  /// The writer, which await_end() waits for.
-  static std::shared_ptr<dds::Writer> share(std::unique_ptr<dds::Writer> writer, Hold hold) {
-    return {writer.release(), [hold = std::move(hold)](dds::Writer* ended) { delete ended; }};
+  /// What await_end() waits for.
+  template <class Used>
+  static std::shared_ptr<Used> share(std::unique_ptr<Used> used, Hold hold) {
+    return {used.release(), [hold = std::move(hold)](Used* ended) { delete ended; }};
   }
 
-  /// Once, after the owner has let go of its writers; not by a thread that holds one.
+  /// Once, after the owner has let go of them; not by a thread that holds one.
   void await_end() {
     alive_.reset();
     gone_->wait();

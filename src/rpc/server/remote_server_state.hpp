@@ -11,18 +11,18 @@
 
 #include "core/recent_set.hpp"
 #include "newcomers.hpp"
-#include "rpc/server/dds_server.hpp"
-#include "rpc/wire/shared_writers.hpp"
+#include "rpc/server/remote_server.hpp"
+#include "rpc/wire/shared_use.hpp"
 #include "rpc/wire/transit_delay.hpp"
 #include "rpc/wire/wire.hpp"
 #include "skein/detail/call_memory.hpp"
 
 namespace skein::rpc {
 
-/// Requests come in on the vendor's thread (dds_server.cpp), clients come and go on `control`
-/// (dds_server_clients.cpp), replies leave from the service's executor, refusals and what found no
-/// room at first from `control` (dds_server_replies.cpp).
-struct DdsServer::State : std::enable_shared_from_this<State> {
+/// Requests come in on the port's thread (remote_server.cpp), clients come and go on `control`
+/// (remote_server_clients.cpp), replies leave from the service's executor, refusals and what found
+/// no room at first from `control` (remote_server_replies.cpp).
+struct RemoteServer::State : std::enable_shared_from_this<State> {
   using RequestId = wire::RequestId;
 
   struct RequestHash {
@@ -38,18 +38,19 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
     std::string text;
   };
 
-  /// A reply that waits for room in its client's writer.
+  /// A reply that waits for room in its client's sender.
   struct Unsent {
     Bytes message;
     Instant deadline;
   };
 
   struct Client {
-    std::shared_ptr<dds::Writer> writer;  // under the server's mutex; nothing once the server ends
+    std::shared_ptr<calls::Sender>
+        sender;  // under the server's mutex; nothing once the server ends
     std::shared_ptr<Session> session;
     std::exception_ptr refusal;  // what the Head threw instead of making a session
     RequestId open;
-    bool matched = false;
+    bool found = false;                // it would hear what is sent
     std::atomic<bool> stalled{false};  // replies wait in `unsent`, or are about to
     // Under the server's mutex:
     TransitDelay transit;
@@ -68,9 +69,9 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
     RequestId id;
   };
 
-  State(dds::Participant& participant_, Executor& control_, Clock& clock_,
+  State(calls::ProviderPort& port_, Executor& control_, Clock& clock_,
         std::shared_ptr<Service> service_, Options options_)
-      : participant(participant_),
+      : port(port_),
         control(control_),
         clock(clock_),
         service(std::move(service_)),
@@ -78,12 +79,12 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
         address{std::string(service->interface_info().name), service->id(),
                 service->interface_info().representation()} {}
 
-  dds::Participant& participant;
+  calls::ProviderPort& port;
   Executor& control;
   Clock& clock;
   const std::shared_ptr<Service> service;
   const Options options;
-  const DdsAddress address;
+  const calls::Address address;
 
   mutable std::mutex mutex;
   std::unordered_map<Guid, std::shared_ptr<Client>> clients;
@@ -99,25 +100,25 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
   bool closed = false;
   bool leaving = false;
   std::condition_variable less_to_do;  // once it is leaving
-  SharedWriters writers;
-  std::unique_ptr<dds::Reader> requests;  // last: goes first, and no listener runs after that
+  SharedUse senders;
+  std::unique_ptr<calls::Receiver> requests;  // last: goes first, and no listener runs after that
 
   std::shared_ptr<Client> make_client();
   std::size_t connected() const;
 
-  // ---- on the vendor's thread
-  void on_sample(const dds::Sample& sample);
-  void on_unreadable(const dds::Sample& sample, const Error& why);
+  // ---- on the port's thread
+  void on_message(const calls::Message& message);
+  void on_unreadable(const calls::Message& message, const Error& why);
   void drop_malformed(const std::string& why);
   void drop_impostor();
-  std::shared_ptr<Client> sender_of(const dds::Sample& sample, const wire::RequestHead& head);
-  void on_request(const dds::Sample& sample, const wire::RequestHead& head);
-  void accept(const dds::Sample& sample, const wire::RequestHead& head, Instant arrived,
+  std::shared_ptr<Client> client_of(const calls::Message& message, const wire::RequestHead& head);
+  void on_request(const calls::Message& message, const wire::RequestHead& head);
+  void accept(const calls::Message& message, const wire::RequestHead& head, Instant arrived,
               const std::shared_ptr<Client>& client);
   std::shared_ptr<OutgoingStream> make_stream(const std::shared_ptr<Client>& client,
                                               const RequestId& id, const Invocation& invocation,
                                               std::uint32_t credit);
-  void on_reserved(const dds::Sample& sample, const wire::RequestHead& head);
+  void on_reserved(const calls::Message& message, const wire::RequestHead& head);
   std::shared_ptr<Invocation> find_active(const RequestId& id) const;
   Duration remaining(Client& client, const wire::RequestTrailer& trailer, Instant arrived);
   void refuse(const std::shared_ptr<Client>& client, const RequestId& id, ErrorCode code,
@@ -133,18 +134,18 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
   bool has_room(const Guid& client, std::size_t beyond_of_peer, std::size_t beyond) const;
   void turn_away(const Guid& client);
   void admit(const RequestId& id, const std::shared_ptr<Client>& client);
-  void make_reply_writer(const RequestId& id, const std::shared_ptr<Client>& client);
+  void make_reply_sender(const RequestId& id, const std::shared_ptr<Client>& client);
   bool answer_open(const Guid& key);
-  void on_reply_reader(const Guid& key, const std::shared_ptr<Client>& client, bool matched);
+  void on_reply_receiver(const Guid& key, const std::shared_ptr<Client>& client, bool found);
   bool is_current(const Guid& key, const std::shared_ptr<Client>& client) const;
   bool is_known(const Guid& key, const std::shared_ptr<Client>& client) const;
-  void on_request_writer(const Guid& key, bool matched);
+  void on_request_sender(const Guid& key, bool found);
   void remind(const Guid& key, const std::weak_ptr<Client>& dismissed,
               std::chrono::milliseconds after);
-  void end_foreign_calls(const Guid& writer);
+  void end_foreign_calls(const Guid& sender);
   template <class Predicate>
   void cancel_if(Predicate predicate);
-  void drop_unless_matched(const Guid& key);
+  void drop_unless_found(const Guid& key);
   void drop(const Guid& key);
   void send_unsent(const std::shared_ptr<Client>& client);
   std::optional<Unsent> next_unsent(Client& client);
@@ -157,10 +158,10 @@ struct DdsServer::State : std::enable_shared_from_this<State> {
   void send_item(const std::shared_ptr<Client>& client, const RequestId& id,
                  const OperationInfo& operation, const void* out, std::uint64_t position,
                  Instant deadline);
-  std::shared_ptr<dds::Writer> forget(const Request& request);
-  std::shared_ptr<dds::Writer> writer_of(const Client& client) const;
-  bool write(const std::shared_ptr<Client>& client, const std::shared_ptr<dds::Writer>& writer,
-             Bytes& message, Instant deadline);
+  std::shared_ptr<calls::Sender> forget(const Request& request);
+  std::shared_ptr<calls::Sender> sender_to(const Client& client) const;
+  bool send(const std::shared_ptr<Client>& client, const std::shared_ptr<calls::Sender>& sender,
+            Bytes& message, Instant deadline);
   bool keep_unsent(const std::shared_ptr<Client>& client, Bytes& message, Instant deadline);
   void retry_later(const std::shared_ptr<Client>& client, Duration after);
   void note_lost(std::uint64_t count, const std::string& why);

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/log.hpp"
-#include "dds_server_state.hpp"
+#include "remote_server_state.hpp"
 #include "rpc/wire/common.hpp"
 #include "rpc/wire/reply_encoding.hpp"
 #include "skein/error.hpp"
@@ -12,7 +12,7 @@
 namespace skein::rpc {
 namespace {
 
-// How long an opened client may take to match its reply reader before it is forgotten.
+// How long an opened client may take to be found at its receiver before it is forgotten.
 constexpr std::chrono::seconds kOpenPatience{10};
 constexpr std::chrono::milliseconds kFirstReminder{20};
 constexpr std::chrono::milliseconds kLastReminder{2000};
@@ -22,9 +22,9 @@ constexpr std::size_t kRefused = 128;
 
 }  // namespace
 
-// The last to let go of a client may be a vendor's thread, which must not destroy its writer; or
-// the thread of a call that hung, when the server has ended, and taken the writer with it.
-std::shared_ptr<DdsServer::State::Client> DdsServer::State::make_client() {
+// The last to let go of a client may be a port's thread, which must not destroy its sender; or
+// the thread of a call that hung, when the server has ended, and taken the sender with it.
+std::shared_ptr<RemoteServer::State::Client> RemoteServer::State::make_client() {
   return {new Client, [state = weak_from_this()](Client* client) {
             const std::shared_ptr<Client> owned(client);
             if (const auto self = state.lock()) self->control.post_or_run([owned] {});
@@ -33,7 +33,7 @@ std::shared_ptr<DdsServer::State::Client> DdsServer::State::make_client() {
 
 // Clients are looked at one a task, so that what else waits for `control` has its turn, too. What
 // is not taken here is repeated by who sent it.
-void DdsServer::State::announce(Newcomer newcomer) {
+void RemoteServer::State::announce(Newcomer newcomer) {
   const Guid client = newcomer.id.client;
   {
     std::lock_guard lock(mutex);
@@ -46,7 +46,7 @@ void DdsServer::State::announce(Newcomer newcomer) {
   admit_later();
 }
 
-void DdsServer::State::admit_later() {
+void RemoteServer::State::admit_later() {
   const bool posted = control.post([state = weak_from_this()] {
     if (const auto self = state.lock()) self->admit_next();
   });
@@ -55,7 +55,7 @@ void DdsServer::State::admit_later() {
   admitting = false;
 }
 
-void DdsServer::State::admit_next() {
+void RemoteServer::State::admit_next() {
   std::optional<Newcomer> next;
   {
     std::lock_guard lock(mutex);
@@ -75,14 +75,14 @@ void DdsServer::State::admit_next() {
   admit_later();
 }
 
-void DdsServer::State::open(const Newcomer& newcomer) {
+void RemoteServer::State::open(const Newcomer& newcomer) {
   const RequestId& id = newcomer.id;
   bool room;
   {
     std::lock_guard lock(mutex);
     if (const auto found = clients.find(id.client); found != clients.end()) {
       found->second->open = id;
-      if (!found->second->matched) return;
+      if (!found->second->found) return;
     }
     room = has_room(id.client, 0, 0);
   }
@@ -110,8 +110,8 @@ void DdsServer::State::open(const Newcomer& newcomer) {
 }
 
 // Under the lock: whether one more client of that peer is within the limits, or so many beyond.
-bool DdsServer::State::has_room(const Guid& client, std::size_t beyond_of_peer,
-                                std::size_t beyond) const {
+bool RemoteServer::State::has_room(const Guid& client, std::size_t beyond_of_peer,
+                                   std::size_t beyond) const {
   const Guid peer = client.participant();
   const auto of_peer =
       static_cast<std::size_t>(std::count_if(clients.begin(), clients.end(), [&](const auto& each) {
@@ -123,7 +123,7 @@ bool DdsServer::State::has_room(const Guid& client, std::size_t beyond_of_peer,
 }
 
 // Under the lock.
-void DdsServer::State::turn_away(const Guid& client) {
+void RemoteServer::State::turn_away(const Guid& client) {
   if (++counters.turned_away > 1) return;
   log(LogLevel::Warning, address.service,
       "participant " + client.participant().hex() +
@@ -132,9 +132,9 @@ void DdsServer::State::turn_away(const Guid& client) {
 }
 
 // This side forgot the client (it was stopped, or cut off), and the client did not notice: it
-// hears so once its reply reader is found. What it sent may be a repetition, so it is never
+// hears so once its receiver is found. What it sent may be a repetition, so it is never
 // executed.
-void DdsServer::State::dismiss(const RequestId& id) {
+void RemoteServer::State::dismiss(const RequestId& id) {
   {
     std::lock_guard lock(mutex);
     if (const auto found = clients.find(id.client); found != clients.end())
@@ -153,10 +153,10 @@ void DdsServer::State::dismiss(const RequestId& id) {
   remind(id.client, client, kFirstReminder);
 }
 
-// A reader that has found a writer only just may miss what that writes, and who waits for a call's
+// A receiver that has found a sender only just may miss what that sends, and who waits for a call's
 // end asks for nothing again.
-void DdsServer::State::remind(const Guid& key, const std::weak_ptr<Client>& dismissed,
-                              std::chrono::milliseconds after) {
+void RemoteServer::State::remind(const Guid& key, const std::weak_ptr<Client>& dismissed,
+                                 std::chrono::milliseconds after) {
   if (after > kLastReminder) return;
   clock.call_after(after, [state = weak_from_this(), key, dismissed, after] {
     const auto self = state.lock();
@@ -171,9 +171,9 @@ void DdsServer::State::remind(const Guid& key, const std::weak_ptr<Client>& dism
   });
 }
 
-void DdsServer::State::admit(const RequestId& id, const std::shared_ptr<Client>& client) {
+void RemoteServer::State::admit(const RequestId& id, const std::shared_ptr<Client>& client) {
   try {
-    make_reply_writer(id, client);
+    make_reply_sender(id, client);
   } catch (const Error& error) {
     log(LogLevel::Error, address.service,
         std::string("a client cannot be answered: ") + error.what());
@@ -185,47 +185,45 @@ void DdsServer::State::admit(const RequestId& id, const std::shared_ptr<Client>&
         const auto self = state.lock();
         if (!self) return;
         self->control.post_or_run([state, key] {
-          if (const auto self = state.lock()) self->drop_unless_matched(key);
+          if (const auto self = state.lock()) self->drop_unless_found(key);
         });
       });
   std::lock_guard lock(mutex);
   client->patience = patience;
 }
 
-void DdsServer::State::make_reply_writer(const RequestId& id,
-                                         const std::shared_ptr<Client>& client) {
-  SharedWriters::Hold hold;
+void RemoteServer::State::make_reply_sender(const RequestId& id,
+                                            const std::shared_ptr<Client>& client) {
+  SharedUse::Hold hold;
   {
     std::lock_guard lock(mutex);
     if (closed) return;
-    hold = writers.hold();
+    hold = senders.hold();
     clients.emplace(id.client, client);
   }
-  dds::WriterListener listener;
-  listener.on_matched = [state = weak_from_this(), key = id.client, weak = std::weak_ptr(client)](
-                            const Guid& reader, bool matched) {
-    if (reader.participant() != key.participant()) return;  // somebody who listens in
-    const auto self = state.lock();
-    const auto client = weak.lock();
-    if (self && client) self->on_reply_reader(key, client, matched);
-  };
-  auto writer = SharedWriters::share(
-      participant.create_writer(address.reply_topic(),
-                                call_qos(address.representation, {id.client.hex()}),
-                                std::move(listener)),
+  auto sender = SharedUse::share(
+      port.send_replies(address, id.client,
+                        [state = weak_from_this(), key = id.client, weak = std::weak_ptr(client)](
+                            const Guid& receiver, bool found) {
+                          if (receiver.participant() != key.participant())
+                            return;  // somebody who listens in
+                          const auto self = state.lock();
+                          const auto client = weak.lock();
+                          if (self && client) self->on_reply_receiver(key, client, found);
+                        }),
       std::move(hold));
   const std::lock_guard lock(mutex);
-  if (!closed) client->writer = std::move(writer);
+  if (!closed) client->sender = std::move(sender);
 }
 
-// False where there is no such client; answers only a client whose reader would get the answer.
-bool DdsServer::State::answer_open(const Guid& key) {
+// False where there is no such client; answers only a client whose receiver would get the answer.
+bool RemoteServer::State::answer_open(const Guid& key) {
   std::shared_ptr<Client> client;
   {
     std::lock_guard lock(mutex);
     const auto found = clients.find(key);
     if (found == clients.end()) return false;
-    if (!found->second->matched || !found->second->writer) return true;
+    if (!found->second->found || !found->second->sender) return true;
     client = found->second;
   }
   Bytes message;
@@ -241,20 +239,20 @@ bool DdsServer::State::answer_open(const Guid& key) {
     encode_error(message, address.representation, client->open, ErrorCode::Internal, error.what(),
                  wire::kOpen);
   }
-  write(client, writer_of(*client), message, clock.now() + kOpenPatience);
+  send(client, sender_to(*client), message, clock.now() + kOpenPatience);
   return true;
 }
 
-void DdsServer::State::on_reply_reader(const Guid& key, const std::shared_ptr<Client>& client,
-                                       bool matched) {
+void RemoteServer::State::on_reply_receiver(const Guid& key, const std::shared_ptr<Client>& client,
+                                            bool found) {
   {
     std::lock_guard lock(mutex);
-    client->matched = matched;
+    client->found = found;
   }
-  control.post_or_run([state = weak_from_this(), key, client, matched] {
+  control.post_or_run([state = weak_from_this(), key, client, found] {
     const auto self = state.lock();
     if (!self) return;
-    if (matched) {
+    if (found) {
       self->answer_open(key);
     } else if (self->is_current(key, client)) {
       self->drop(key);
@@ -262,13 +260,13 @@ void DdsServer::State::on_reply_reader(const Guid& key, const std::shared_ptr<Cl
   });
 }
 
-bool DdsServer::State::is_current(const Guid& key, const std::shared_ptr<Client>& client) const {
+bool RemoteServer::State::is_current(const Guid& key, const std::shared_ptr<Client>& client) const {
   std::lock_guard lock(mutex);
   return is_known(key, client);
 }
 
 // Under the lock.
-bool DdsServer::State::is_known(const Guid& key, const std::shared_ptr<Client>& client) const {
+bool RemoteServer::State::is_known(const Guid& key, const std::shared_ptr<Client>& client) const {
   if (client == foreign) return true;
   const auto found = clients.find(key);
   return found != clients.end() && found->second == client;
@@ -276,37 +274,37 @@ bool DdsServer::State::is_known(const Guid& key, const std::shared_ptr<Client>& 
 
 // A client that leaves before it is admitted takes no session with it. One that comes back after it
 // was forgotten may not know that it was, and may wait for an answer to what was lost meanwhile.
-void DdsServer::State::on_request_writer(const Guid& key, bool matched) {
+void RemoteServer::State::on_request_sender(const Guid& key, bool found) {
   {
     std::lock_guard lock(mutex);
-    if (matched) {
+    if (found) {
       if (!forgotten.erase(key)) return;
     } else {
       newcomers.note_left(key);
       if (clients.contains(key)) forgotten.insert(key);
     }
   }
-  control.post_or_run([state = weak_from_this(), key, matched] {
+  control.post_or_run([state = weak_from_this(), key, found] {
     const auto self = state.lock();
     if (!self) return;
-    if (!matched) {
+    if (!found) {
       self->end_foreign_calls(key);
-      return self->drop_unless_matched(key);
+      return self->drop_unless_found(key);
     }
     self->drop(key);
     self->dismiss({key, 0});
   });
 }
 
-// One that has no session is known by its request writer alone.
-void DdsServer::State::end_foreign_calls(const Guid& writer) {
-  cancel_if([&](const RequestId&, const Invocation& call) { return call.connection == writer; });
+// One that has no session is known by its sender alone.
+void RemoteServer::State::end_foreign_calls(const Guid& sender) {
+  cancel_if([&](const RequestId&, const Invocation& call) { return call.connection == sender; });
 }
 
 // Cancels unlocked: an implementation that hears of it may answer at once. Oneway calls run all the
 // same: their caller may leave as soon as they are sent.
 template <class Predicate>
-void DdsServer::State::cancel_if(Predicate predicate) {
+void RemoteServer::State::cancel_if(Predicate predicate) {
   std::vector<std::shared_ptr<Invocation>> cancelled;
   {
     std::lock_guard lock(mutex);
@@ -318,19 +316,19 @@ void DdsServer::State::cancel_if(Predicate predicate) {
   for (const auto& invocation : cancelled) invocation->cancel();
 }
 
-void DdsServer::State::drop_unless_matched(const Guid& key) {
+void RemoteServer::State::drop_unless_found(const Guid& key) {
   {
     std::lock_guard lock(mutex);
     const auto found = clients.find(key);
-    if (found == clients.end() || found->second->matched) return;
+    if (found == clients.end() || found->second->found) return;
   }
   drop(key);
 }
 
 // The client has gone: its session ends, and nobody waits for its calls any more.
-void DdsServer::State::drop(const Guid& key) {
-  std::shared_ptr<dds::Writer>
-      writer;  // goes here, where its listener can be waited for, and unlocked
+void RemoteServer::State::drop(const Guid& key) {
+  std::shared_ptr<calls::Sender>
+      sender;  // goes here, where its listener can be waited for, and unlocked
   std::shared_ptr<Client> client;
   TimerId patience;
   TimerId retry;
@@ -339,7 +337,7 @@ void DdsServer::State::drop(const Guid& key) {
     const auto found = clients.find(key);
     if (found == clients.end()) return;
     client = std::move(found->second);
-    writer = std::move(client->writer);
+    sender = std::move(client->sender);
     patience = client->patience;
     retry = client->retry;
     clients.erase(found);

@@ -1,51 +1,50 @@
 #include <algorithm>
 
 #include "core/log.hpp"
-#include "dds_channel_state.hpp"
+#include "remote_channel_state.hpp"
 #include "rpc/wire/common.hpp"
 #include "rpc/wire/reply_reading.hpp"
 #include "skein/error.hpp"
 
 namespace skein::rpc {
 
-void DdsChannel::State::on_sample(const dds::Sample& sample) {
-  if (sample.state != dds::InstanceState::Alive) return;
-  if (!is_provider(sample.writer)) return note_forged(sample.writer);
+void RemoteChannel::State::on_message(const calls::Message& message) {
+  if (!is_provider(message.sender)) return note_forged(message.sender);
   try {
-    const wire::ReplyHead head = wire::read_reply_head(sample.cdr);
+    const wire::ReplyHead head = wire::read_reply_head(message.bytes);
     if (head.related.client != client) return;
     if (head.related.number == 0) {
-      on_opened(sample.cdr, head);
+      on_opened(message.bytes, head);
     } else if (head.operation == wire::kOpen) {
       dismissed("it had ended the session before the call arrived");
     } else {
-      on_reply(sample.cdr, head);
+      on_reply(message.bytes, head);
     }
   } catch (const std::exception& error) {
-    on_unreadable(sample.cdr, error);
+    on_unreadable(message.bytes, error);
   }
 }
 
-// Whoever knows a client's GUID can write to its reader.
-bool DdsChannel::State::is_provider(const Guid& writer) const {
-  const Guid participant = writer.participant();
+// Over DDS, whoever knows a client's identity can send to it.
+bool RemoteChannel::State::is_provider(const Guid& sender) const {
+  const Guid participant = sender.participant();
   if (!options.participant.is_nil()) return participant == options.participant;
   std::lock_guard lock(mutex);
   return std::any_of(servers.begin(), servers.end(),
-                     [&](const Guid& reader) { return reader.participant() == participant; });
+                     [&](const Guid& receiver) { return receiver.participant() == participant; });
 }
 
-void DdsChannel::State::note_forged(const Guid& writer) {
+void RemoteChannel::State::note_forged(const Guid& sender) {
   std::lock_guard lock(mutex);
   if (++forged > 1) return;
   log(LogLevel::Warning, address.service,
       "refused a reply in the name of " + options.peer + ": participant " +
-          writer.participant().hex() + ", which is not the provider, wrote it");
+          sender.participant().hex() + ", which is not the provider, wrote it");
 }
 
 // A reply of which no more can be read than whose call it answers ends that call all the same.
-void DdsChannel::State::on_unreadable(std::span<const std::byte> message,
-                                      const std::exception& why) {
+void RemoteChannel::State::on_unreadable(std::span<const std::byte> message,
+                                         const std::exception& why) {
   const auto related = wire::read_request_id(message);
   const auto call = related && related->client == client ? remove(related->number) : nullptr;
   if (!call) return note_malformed(why.what());
@@ -56,7 +55,8 @@ void DdsChannel::State::on_unreadable(std::span<const std::byte> message,
   if (call->operation().stream) tell_server(related->number);
 }
 
-void DdsChannel::State::on_reply(std::span<const std::byte> message, const wire::ReplyHead& head) {
+void RemoteChannel::State::on_reply(std::span<const std::byte> message,
+                                    const wire::ReplyHead& head) {
   const std::uint64_t number = head.related.number;
   const auto call = remove(number, Keep::Streams);
   if (!call) return;
@@ -67,7 +67,7 @@ void DdsChannel::State::on_reply(std::span<const std::byte> message, const wire:
   }
 }
 
-void DdsChannel::State::note_malformed(const std::string& why) {
+void RemoteChannel::State::note_malformed(const std::string& why) {
   std::lock_guard lock(mutex);
   if (++malformed > 1) return;
   first_malformed = why;
@@ -75,8 +75,8 @@ void DdsChannel::State::note_malformed(const std::string& why) {
 }
 
 // For who waited in vain; under the lock.
-std::string DdsChannel::State::what_came_malformed() const {
-  const std::uint64_t headless = replies ? replies->counters().malformed : 0;
+std::string RemoteChannel::State::what_came_malformed() const {
+  const std::uint64_t headless = replies ? replies->malformed() : 0;
   if (malformed + headless == 0) return {};
   return "; " + std::to_string(malformed + headless) +
          " malformed replies came on this connection, the first: " +
@@ -84,7 +84,8 @@ std::string DdsChannel::State::what_came_malformed() const {
          ". The network damages packets, or the two sides were built from different IDL";
 }
 
-void DdsChannel::State::on_opened(std::span<const std::byte> message, const wire::ReplyHead& head) {
+void RemoteChannel::State::on_opened(std::span<const std::byte> message,
+                                     const wire::ReplyHead& head) {
   std::exception_ptr refused;
   // A server that is not built with Skein does not know `open`; that it says so proves it ready.
   // One that is refuses with a trailer.
@@ -110,12 +111,12 @@ void DdsChannel::State::on_opened(std::span<const std::byte> message, const wire
 }
 
 // In the default partition one of several servers may not know this client, and others do.
-void DdsChannel::State::dismissed(const std::string& how) {
+void RemoteChannel::State::dismissed(const std::string& how) {
   if (!address.provider.is_nil()) lose(how);
 }
 
-void DdsChannel::State::complete(PendingCall& call, std::span<const std::byte> message,
-                                 const wire::ReplyHead& head) {
+void RemoteChannel::State::complete(PendingCall& call, std::span<const std::byte> message,
+                                    const wire::ReplyHead& head) {
   if (!call.claim()) return;
   std::exception_ptr error;
   try {
@@ -127,8 +128,8 @@ void DdsChannel::State::complete(PendingCall& call, std::span<const std::byte> m
   call.finish(std::move(error));
 }
 
-std::exception_ptr DdsChannel::State::unreadable(const OperationInfo& operation,
-                                                 const std::exception& malformed) {
+std::exception_ptr RemoteChannel::State::unreadable(const OperationInfo& operation,
+                                                    const std::exception& malformed) {
   note_malformed(malformed.what());
   return std::make_exception_ptr(
       Internal(options.peer + " answered " + quoted(operation) +
@@ -137,9 +138,9 @@ std::exception_ptr DdsChannel::State::unreadable(const OperationInfo& operation,
 }
 
 // What is wrong with a stream ends it, here and at the server.
-void DdsChannel::State::on_stream_reply(std::uint64_t number, PendingStream& stream,
-                                        std::span<const std::byte> message,
-                                        const wire::ReplyHead& head) {
+void RemoteChannel::State::on_stream_reply(std::uint64_t number, PendingStream& stream,
+                                           std::span<const std::byte> message,
+                                           const wire::ReplyHead& head) {
   try {
     read_part(number, stream, message, head);
   } catch (const std::exception& malformed) {
@@ -148,8 +149,9 @@ void DdsChannel::State::on_stream_reply(std::uint64_t number, PendingStream& str
   }
 }
 
-void DdsChannel::State::read_part(std::uint64_t number, PendingStream& stream,
-                                  std::span<const std::byte> message, const wire::ReplyHead& head) {
+void RemoteChannel::State::read_part(std::uint64_t number, PendingStream& stream,
+                                     std::span<const std::byte> message,
+                                     const wire::ReplyHead& head) {
   const TypeSupport& type = *stream.operation().out;
   PendingStream::Item item(type.make(), type.destroy);
   Reply reply = read_reply(stream.operation(), item.get(), message, head, options.peer);

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "core/log.hpp"
-#include "dds_server_state.hpp"
+#include "remote_server_state.hpp"
 #include "rpc/wire/common.hpp"
 #include "rpc/wire/reply_encoding.hpp"
 #include "skein/error.hpp"
@@ -12,22 +12,22 @@ namespace skein::rpc {
 namespace {
 
 // How many refusals may wait to be written to a client: no client that waits for them has more
-// calls on its way (DdsChannel::Options::calls_in_flight).
+// calls on its way (RemoteChannel::Options::calls_in_flight).
 constexpr std::size_t kMaxRefusals = 4096;
 // How long a refusal is worth sending; what the call's deadline is may be unknown.
 constexpr std::chrono::seconds kRefusalPatience{10};
-// How soon replies that found no room are tried again: no vendor tells when there is some.
+// How soon replies that found no room are tried again: no port tells when there is some.
 constexpr std::chrono::milliseconds kRetryInterval{5};
-// How much is written then before an acknowledgment is waited for again: as much as any writer
+// How much is written then before an acknowledgment is waited for again: as much as any sender
 // takes without blocking `control`.
 constexpr std::size_t kRetrySize = 256 << 10;
 
 }  // namespace
 
-// Vendor threads never write: the refusal leaves from `control`, by one task for all that wait,
+// A port's threads never send: the refusal leaves from `control`, by one task for all that wait,
 // which finds room there whatever else does.
-void DdsServer::State::refuse(const std::shared_ptr<Client>& client, const RequestId& id,
-                              ErrorCode code, std::string text) {
+void RemoteServer::State::refuse(const std::shared_ptr<Client>& client, const RequestId& id,
+                                 ErrorCode code, std::string text) {
   {
     std::lock_guard lock(mutex);
     ++counters.refused;
@@ -40,7 +40,7 @@ void DdsServer::State::refuse(const std::shared_ptr<Client>& client, const Reque
   });
 }
 
-void DdsServer::State::write_refusals(const std::shared_ptr<Client>& client) {
+void RemoteServer::State::write_refusals(const std::shared_ptr<Client>& client) {
   std::deque<Refusal> refusals;
   {
     std::lock_guard lock(mutex);
@@ -57,13 +57,14 @@ void DdsServer::State::write_refusals(const std::shared_ptr<Client>& client) {
     } else {
       encode_error(message, address.representation, id, code, text);
     }
-    write(client, writer_of(*client), message, clock.now() + kRefusalPatience);
+    send(client, sender_to(*client), message, clock.now() + kRefusalPatience);
   }
 }
 
-void DdsServer::State::respond(Request& request, const void* out, const std::exception_ptr& error) {
+void RemoteServer::State::respond(Request& request, const void* out,
+                                  const std::exception_ptr& error) {
   const OperationInfo& operation = *request.operation;
-  const auto writer = forget(request);
+  const auto sender = forget(request);
   if (operation.oneway) return;
   thread_local Bytes message;
   if (out || error) {
@@ -71,47 +72,47 @@ void DdsServer::State::respond(Request& request, const void* out, const std::exc
   } else {
     encode_end(message, address.representation, request.id, operation, request.stream->sent());
   }
-  write(request.client, writer, message, request.deadline);
+  send(request.client, sender, message, request.deadline);
   if (message.capacity() > kKeptCapacity) message = Bytes();
 }
 
-void DdsServer::State::send_item(const std::shared_ptr<Client>& client, const RequestId& id,
-                                 const OperationInfo& operation, const void* out,
-                                 std::uint64_t position, Instant deadline) {
+void RemoteServer::State::send_item(const std::shared_ptr<Client>& client, const RequestId& id,
+                                    const OperationInfo& operation, const void* out,
+                                    std::uint64_t position, Instant deadline) {
   thread_local Bytes message;
   encode_item(message, address.representation, id, operation, out, position);
-  const bool sent = write(client, writer_of(*client), message, deadline);
+  const bool sent = send(client, sender_to(*client), message, deadline);
   if (message.capacity() > kKeptCapacity) message = Bytes();
   if (!sent) throw Overloaded("the caller of " + quoted(operation) + " takes no replies");
 }
 
-// The call is over. Returns who writes to its client, or null.
-std::shared_ptr<dds::Writer> DdsServer::State::forget(const Request& request) {
-  std::shared_ptr<dds::Writer> writer;
+// The call is over. Returns the sender to its client, or null.
+std::shared_ptr<calls::Sender> RemoteServer::State::forget(const Request& request) {
+  std::shared_ptr<calls::Sender> sender;
   {
     std::lock_guard lock(mutex);
     active.erase(request.id);
-    writer = request.client->writer;
+    sender = request.client->sender;
     if (leaving) less_to_do.notify_all();
   }
   if (options.on_load) options.on_load();
-  return writer;
+  return sender;
 }
 
-std::shared_ptr<dds::Writer> DdsServer::State::writer_of(const Client& client) const {
+std::shared_ptr<calls::Sender> RemoteServer::State::sender_to(const Client& client) const {
   std::lock_guard lock(mutex);
-  return client.writer;
+  return client.sender;
 }
 
 // False where the reply was lost. A client that stopped reading holds up this thread once, and not
 // with each reply: what comes after the one that found no room waits behind it.
-bool DdsServer::State::write(const std::shared_ptr<Client>& client,
-                             const std::shared_ptr<dds::Writer>& writer, Bytes& message,
-                             Instant deadline) {
-  if (!writer) return false;
+bool RemoteServer::State::send(const std::shared_ptr<Client>& client,
+                               const std::shared_ptr<calls::Sender>& sender, Bytes& message,
+                               Instant deadline) {
+  if (!sender) return false;
   if (client->stalled) return keep_unsent(client, message, deadline);
   try {
-    writer->write_within([this, deadline] { return deadline - clock.now(); }, message);
+    sender->send(message, [this, deadline] { return deadline - clock.now(); });
     return true;
   } catch (const Overloaded&) {
     return keep_unsent(client, message, deadline);
@@ -122,12 +123,12 @@ bool DdsServer::State::write(const std::shared_ptr<Client>& client,
   }
 }
 
-bool DdsServer::State::keep_unsent(const std::shared_ptr<Client>& client, Bytes& message,
-                                   Instant deadline) {
+bool RemoteServer::State::keep_unsent(const std::shared_ptr<Client>& client, Bytes& message,
+                                      Instant deadline) {
   const std::size_t size = message.size();
   {
     std::lock_guard lock(mutex);
-    if (!client->writer) return false;
+    if (!client->sender) return false;
     if (client->unsent_size + size > kMaxUnsent - unsent_size) {
       note_lost(1, std::to_string(unsent_size) + " octets wait already for clients that take none");
       return false;
@@ -142,7 +143,7 @@ bool DdsServer::State::keep_unsent(const std::shared_ptr<Client>& client, Bytes&
 }
 
 // The client is not kept: the last to let go of it must not be the clock's thread.
-void DdsServer::State::retry_later(const std::shared_ptr<Client>& client, Duration after) {
+void RemoteServer::State::retry_later(const std::shared_ptr<Client>& client, Duration after) {
   const TimerId timer =
       clock.call_after(after, [state = weak_from_this(), weak = std::weak_ptr(client)] {
         const auto self = state.lock();
@@ -159,7 +160,7 @@ void DdsServer::State::retry_later(const std::shared_ptr<Client>& client, Durati
 
 // In their order, once all that was written before has been acknowledged. Others need `control`,
 // too: a client for which it has waited in vain gets a fifth of its time at most.
-void DdsServer::State::send_unsent(const std::shared_ptr<Client>& client) {
+void RemoteServer::State::send_unsent(const std::shared_ptr<Client>& client) {
   Duration pause = kRetryInterval;
   for (std::size_t written = 0; written < kRetrySize;) {
     auto next = next_unsent(*client);
@@ -167,7 +168,7 @@ void DdsServer::State::send_unsent(const std::shared_ptr<Client>& client) {
     const Instant begun = clock.now();
     if (!try_to_send(*client, *next, written == 0)) {
       std::lock_guard lock(mutex);
-      if (!client->writer) return;
+      if (!client->sender) return;
       client->unsent.push_front(std::move(*next));
       count_unsent(*client, client->unsent.front().message.size());
       pause = std::max(pause, 4 * (clock.now() - begun));
@@ -178,8 +179,8 @@ void DdsServer::State::send_unsent(const std::shared_ptr<Client>& client) {
   retry_later(client, pause);
 }
 
-// Nothing, and replies go straight to the writer again, where none waits any more.
-std::optional<DdsServer::State::Unsent> DdsServer::State::next_unsent(Client& client) {
+// Nothing, and replies go straight to the sender again, where none waits any more.
+std::optional<RemoteServer::State::Unsent> RemoteServer::State::next_unsent(Client& client) {
   std::lock_guard lock(mutex);
   const Instant now = clock.now();
   const auto late = std::erase_if(client.unsent, [&](const Unsent& each) {
@@ -198,13 +199,13 @@ std::optional<DdsServer::State::Unsent> DdsServer::State::next_unsent(Client& cl
   return next;
 }
 
-bool DdsServer::State::try_to_send(Client& client, const Unsent& reply, bool await_room) {
+bool RemoteServer::State::try_to_send(Client& client, const Unsent& reply, bool await_room) {
   using namespace std::chrono_literals;
-  const auto writer = writer_of(client);
-  if (!writer) return true;
+  const auto sender = sender_to(client);
+  if (!sender) return true;
   try {
-    if (await_room && !writer->wait_for_acknowledgments(0ms)) return false;
-    writer->write_within([&] { return reply.deadline - clock.now(); }, reply.message);
+    if (await_room && !sender->await_taken(0ms)) return false;
+    sender->send(reply.message, [&] { return reply.deadline - clock.now(); });
   } catch (const Overloaded&) {
     return false;
   } catch (const Error& error) {
@@ -215,17 +216,17 @@ bool DdsServer::State::try_to_send(Client& client, const Unsent& reply, bool awa
 }
 
 // These under the lock.
-void DdsServer::State::count_unsent(Client& client, std::size_t size) {
+void RemoteServer::State::count_unsent(Client& client, std::size_t size) {
   client.unsent_size += size;
   unsent_size += size;
 }
 
-void DdsServer::State::discount_unsent(Client& client, std::size_t size) {
+void RemoteServer::State::discount_unsent(Client& client, std::size_t size) {
   client.unsent_size -= size;
   unsent_size -= size;
 }
 
-void DdsServer::State::note_lost(std::uint64_t count, const std::string& why) {
+void RemoteServer::State::note_lost(std::uint64_t count, const std::string& why) {
   if (counters.lost == 0) log(LogLevel::Warning, address.service, "a reply was lost: " + why);
   counters.lost += count;
 }

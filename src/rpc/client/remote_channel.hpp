@@ -5,17 +5,15 @@
 #include <optional>
 #include <string>
 
-#include "dds/port/port.hpp"
-#include "rpc/server/dds_server.hpp"
+#include "call_port/call_port.hpp"
 #include "rpc/service/call_journal.hpp"
 #include "skein/detail/channel.hpp"
 
 namespace skein::rpc {
 
-/// The transport over DDS: one request writer into the provider's partition, one reply reader in a
-/// partition of its own. Replies are decoded on the vendor's thread, or on the caller's where the
-/// reader lends its delivery to it, straight into the caller's result.
-class DdsChannel final : public Channel, public std::enable_shared_from_this<DdsChannel> {
+/// A connection to a provider in another process. Replies are decoded on the port's thread, or on
+/// the caller's if the port lends its delivery to it, straight into the caller's result.
+class RemoteChannel final : public Channel, public std::enable_shared_from_this<RemoteChannel> {
  public:
   struct Options {
     std::string strategy;           ///< See OpenRequest.
@@ -36,19 +34,19 @@ class DdsChannel final : public Channel, public std::enable_shared_from_this<Dds
     /// ends the attempt. Empty: it does.
     std::function<bool()> stands;
     /// Given the channel before the provider has answered: who ends it then ends the attempt.
-    std::function<void(const std::shared_ptr<DdsChannel>&)> begun;
+    std::function<void(const std::shared_ptr<RemoteChannel>&)> begun;
   };
 
   /// Connects: repeats `open` until the provider answers, which proves that both directions work.
   /// Blocks for `options.timeout` of the clock at most. Throws Unavailable where no answer came or
   /// the channel was ended meanwhile, and what the provider's Head threw where it refused.
-  /// `participant` and `control` stand until the channel is disconnected or destroyed. Not from a
-  /// vendor's thread.
-  static std::shared_ptr<DdsChannel> open(dds::Participant& participant, Executor& control,
-                                          std::shared_ptr<Executor> continuations,
-                                          std::shared_ptr<Clock> clock, const DdsAddress& address,
-                                          Options options);
-  ~DdsChannel() override;
+  /// `port` and `control` stand until the channel is disconnected or destroyed. Not from a
+  /// listener.
+  static std::shared_ptr<RemoteChannel> open(calls::ClientPort& port, Executor& control,
+                                             std::shared_ptr<Executor> continuations,
+                                             std::shared_ptr<Clock> clock,
+                                             const calls::Address& address, Options options);
+  ~RemoteChannel() override;
 
   void start(const std::shared_ptr<PendingCall>& call, const void* in) override;
   void start_here(const std::shared_ptr<PendingCall>& call, const void* in) override;
@@ -80,7 +78,7 @@ class DdsChannel final : public Channel, public std::enable_shared_from_this<Dds
 
  private:
   struct State;
-  explicit DdsChannel(std::shared_ptr<State> state) : state_(std::move(state)) {}
+  explicit RemoteChannel(std::shared_ptr<State> state) : state_(std::move(state)) {}
   std::shared_ptr<State> state_;
 };
 

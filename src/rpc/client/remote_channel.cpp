@@ -1,27 +1,27 @@
-#include "rpc/client/dds_channel.hpp"
+#include "rpc/client/remote_channel.hpp"
 
 #include <algorithm>
 #include <utility>
 
 #include "core/clock_wait.hpp"
-#include "dds_channel_state.hpp"
+#include "remote_channel_state.hpp"
 #include "rpc/wire/common.hpp"
 #include "skein/error.hpp"
 
 namespace skein::rpc {
 namespace {
 
-// DDS tells no one that the other side has matched, so `open` is repeated until it is answered:
-// soon at first, since the other side is mostly about to match, then less often.
+// No port tells that the other side has found this one, so `open` is repeated until it is answered:
+// soon at first, since the other side is mostly about to, then less often.
 constexpr std::chrono::milliseconds kFirstOpenInterval{1};
 constexpr std::chrono::milliseconds kLastOpenInterval{20};
-// How soon it is looked again whether the last requests have arrived: no vendor tells.
+// How soon it is looked again whether the last requests have arrived: no port tells.
 constexpr std::chrono::milliseconds kPartInterval{5};
 
 }  // namespace
 
 template <class MakeError>
-void DdsChannel::State::fail_all(MakeError make_error) {
+void RemoteChannel::State::fail_all(MakeError make_error) {
   Entries failed{&call_memory()};
   {
     std::lock_guard lock(mutex);
@@ -34,41 +34,34 @@ void DdsChannel::State::fail_all(MakeError make_error) {
   }
 }
 
-void DdsChannel::State::create_endpoints() {
-  dds::WriterListener listener;
-  listener.on_matched = [state = weak_from_this()](const Guid& reader, bool matched) {
-    if (const auto self = state.lock()) self->on_server(reader, matched);
-  };
-  listener.on_full = [state = weak_from_this()] {
-    if (const auto self = state.lock()) self->on_full();
-  };
-  auto writer = SharedWriters::share(
-      participant.create_writer(address.request_topic(),
-                                call_qos(address.representation, address.partitions()),
-                                std::move(listener)),
-      writers.hold());
+void RemoteChannel::State::create_endpoints() {
+  auto sender =
+      SharedUse::share(port.send_requests(
+                               address,
+                               [state = weak_from_this()](const Guid& receiver, bool found) {
+                                 if (const auto self = state.lock())
+                                   self->on_server(receiver, found);
+                               },
+                               [state = weak_from_this()] {
+                                 if (const auto self = state.lock()) self->on_full();
+                               }),
+                           senders.hold());
   {
     std::lock_guard lock(mutex);
-    client = writer->guid();
-    requests = std::move(writer);
+    client = sender->identity();
+    requests = std::move(sender);
   }
-  dds::ReaderListener reply_listener;
-  reply_listener.on_data = [state = weak_from_this()](dds::Reader& reader) {
-    const auto self = state.lock();
-    if (self) reader.take([&](const dds::Sample& sample) { self->on_sample(sample); });
-  };
-  std::vector<std::string> partitions{client.hex()};
-  if (address.provider.is_nil()) partitions.push_back("");
-  auto reader = participant.create_reader(address.reply_topic(),
-                                          call_qos(address.representation, std::move(partitions)),
-                                          std::move(reply_listener));
+  auto receiver =
+      port.receive_replies(address, client, {[state = weak_from_this()](const auto& message) {
+                             if (const auto self = state.lock()) self->on_message(message);
+                           }});
   std::lock_guard lock(mutex);
-  if (auto delivery = reader->caller_delivery())
+  if (auto delivery = receiver->caller_delivery())
     answers = std::make_shared<CallerAnswers>(std::move(delivery));
-  replies = std::move(reader);
+  replies = std::move(receiver);
 }
 
-void DdsChannel::State::await_open() {
+void RemoteChannel::State::await_open() {
   const Instant deadline = clock.after(options.timeout);
   std::unique_lock lock(mutex);
   std::size_t greeted = 0;
@@ -100,12 +93,12 @@ void DdsChannel::State::await_open() {
   if (phase != Phase::Open) throw Unavailable("no connection to " + options.peer + ": " + lost_how);
 }
 
-void DdsChannel::State::send_open() {
-  std::shared_ptr<dds::Writer> writer;
+void RemoteChannel::State::send_open() {
+  std::shared_ptr<calls::Sender> sender;
   {
     std::lock_guard lock(mutex);
     if (phase != Phase::Opening) return;
-    writer = requests;
+    sender = requests;
   }
   Bytes message;
   wire::begin_request(message, {client, 0}, wire::kOpen, address.representation);
@@ -113,25 +106,25 @@ void DdsChannel::State::send_open() {
   wire::append_trailer(
       message, wire::RequestTrailer{
                    options.timeout, 0, {}, options.strategy, 0, clock.now().time_since_epoch()});
-  writer->write(message);
+  sender->send(message);
 }
 
 // Others may read a provider's requests, too: they are not it, and their end is not its end.
-void DdsChannel::State::on_server(const Guid& reader, bool matched) {
-  if (!options.participant.is_nil() && reader.participant() != options.participant) return;
+void RemoteChannel::State::on_server(const Guid& receiver, bool found) {
+  if (!options.participant.is_nil() && receiver.participant() != options.participant) return;
   std::unique_lock lock(mutex);
-  if (matched) {
-    servers.push_back(reader);
+  if (found) {
+    servers.push_back(receiver);
   } else {
-    std::erase(servers, reader);
+    std::erase(servers, receiver);
   }
   changed.notify_all();
-  if (matched || !servers.empty() || phase != Phase::Open) return;
+  if (found || !servers.empty() || phase != Phase::Open) return;
   lock.unlock();
   lose(options.gone);
 }
 
-void DdsChannel::State::lose(const std::string& how) {
+void RemoteChannel::State::lose(const std::string& how) {
   {
     std::lock_guard lock(mutex);
     if (phase == Phase::Lost || phase == Phase::Closed) return;
@@ -147,7 +140,7 @@ void DdsChannel::State::lose(const std::string& how) {
   });
 }
 
-void DdsChannel::State::retire(const std::string& how, std::shared_ptr<DdsChannel> itself) {
+void RemoteChannel::State::retire(const std::string& how, std::shared_ptr<RemoteChannel> itself) {
   std::lock_guard lock(mutex);
   if (phase != Phase::Open || retiring) return;
   retiring = true;
@@ -158,7 +151,7 @@ void DdsChannel::State::retire(const std::string& how, std::shared_ptr<DdsChanne
 }
 
 // Under the lock, and not once closed: `control` may be gone then.
-void DdsChannel::State::part_later() {
+void RemoteChannel::State::part_later() {
   control.post([state = weak_from_this()] {
     if (const auto self = state.lock()) self->part();
   });
@@ -166,16 +159,16 @@ void DdsChannel::State::part_later() {
 
 // The endpoints go here, and with them the session, once no call is on its way, a oneway one
 // either: the provider waits for that.
-void DdsChannel::State::part() {
-  std::shared_ptr<DdsChannel> itself;  // goes last
-  std::shared_ptr<dds::Writer> writer;
-  std::shared_ptr<dds::Reader> reader;
+void RemoteChannel::State::part() {
+  std::shared_ptr<RemoteChannel> itself;  // goes last
+  std::shared_ptr<calls::Sender> sender;
+  std::shared_ptr<calls::Receiver> receiver;
   std::shared_ptr<CallerAnswers> answering;
   {
     std::lock_guard lock(mutex);
-    if (phase == Phase::Open) writer = requests;
+    if (phase == Phase::Open) sender = requests;
   }
-  if (writer && !writer->wait_for_acknowledgments(std::chrono::milliseconds(0))) {
+  if (sender && !sender->await_taken(std::chrono::milliseconds(0))) {
     clock.call_after(kPartInterval, [state = weak_from_this()] {
       const auto self = state.lock();
       if (!self) return;
@@ -184,32 +177,32 @@ void DdsChannel::State::part() {
     });
     return;
   }
-  writer.reset();
+  sender.reset();
   std::lock_guard lock(mutex);
   if (phase == Phase::Open && !entries.empty()) return;
   itself.swap(channel);
   if (phase != Phase::Open) return;
   phase = Phase::Lost;
-  writer.swap(requests);
-  reader.swap(replies);
+  sender.swap(requests);
+  receiver.swap(replies);
   answering.swap(answers);
   changed.notify_all();
 }
 
-// Nothing of the participant is in use any more when this returns.
-void DdsChannel::State::close() {
-  std::shared_ptr<dds::Writer> writer;
-  std::shared_ptr<dds::Reader> reader;
+// Nothing of the port is in use any more when this returns.
+void RemoteChannel::State::close() {
+  std::shared_ptr<calls::Sender> sender;
+  std::shared_ptr<calls::Receiver> receiver;
   std::shared_ptr<CallerAnswers> answering;
   std::shared_ptr<void> follower;
-  std::shared_ptr<DdsChannel> itself;
+  std::shared_ptr<RemoteChannel> itself;
   TimerId outdated;
   {
     std::lock_guard lock(mutex);
     if (phase == Phase::Closed) return;
     phase = Phase::Closed;
-    writer.swap(requests);
-    reader.swap(replies);
+    sender.swap(requests);
+    receiver.swap(replies);
     answering.swap(answers);
     follower.swap(companion);
     itself.swap(channel);
@@ -221,72 +214,72 @@ void DdsChannel::State::close() {
     return std::make_exception_ptr(
         Cancelled("the connection to " + options.peer + " was closed during " + quoted(operation)));
   });
-  writer.reset();
-  writers.await_end();
+  sender.reset();
+  senders.await_end();
 }
 
-std::shared_ptr<DdsChannel> DdsChannel::open(dds::Participant& participant, Executor& control,
-                                             std::shared_ptr<Executor> continuations,
-                                             std::shared_ptr<Clock> clock,
-                                             const DdsAddress& address, Options options) {
-  auto state = std::make_shared<State>(participant, control, std::move(continuations),
-                                       std::move(clock), address, std::move(options));
-  std::shared_ptr<DdsChannel> channel(new DdsChannel(state));
+std::shared_ptr<RemoteChannel> RemoteChannel::open(calls::ClientPort& port, Executor& control,
+                                                   std::shared_ptr<Executor> continuations,
+                                                   std::shared_ptr<Clock> clock,
+                                                   const calls::Address& address, Options options) {
+  auto state = std::make_shared<State>(port, control, std::move(continuations), std::move(clock),
+                                       address, std::move(options));
+  std::shared_ptr<RemoteChannel> channel(new RemoteChannel(state));
   state->create_endpoints();
   if (state->options.begun) state->options.begun(channel);
   state->await_open();
   return channel;
 }
 
-DdsChannel::~DdsChannel() { state_->close(); }
+RemoteChannel::~RemoteChannel() { state_->close(); }
 
-void DdsChannel::start(const std::shared_ptr<PendingCall>& call, const void* in) {
+void RemoteChannel::start(const std::shared_ptr<PendingCall>& call, const void* in) {
   state_->start(call, in);
 }
 
-void DdsChannel::start_here(const std::shared_ptr<PendingCall>& call, const void* in) {
+void RemoteChannel::start_here(const std::shared_ptr<PendingCall>& call, const void* in) {
   state_->start_here(call, in);
 }
 
-void DdsChannel::call(const OperationInfo& operation, const void* in, void* out,
-                      const CallTime& time) {
+void RemoteChannel::call(const OperationInfo& operation, const void* in, void* out,
+                         const CallTime& time) {
   state_->call(operation, in, out, time);
 }
 
-Clock& DdsChannel::clock() const noexcept { return state_->clock; }
-Executor& DdsChannel::continuations() const noexcept { return *state_->continuations; }
-std::string DdsChannel::peer() const { return state_->options.peer; }
-std::optional<ConnectionInfo> DdsChannel::info() const {
+Clock& RemoteChannel::clock() const noexcept { return state_->clock; }
+Executor& RemoteChannel::continuations() const noexcept { return *state_->continuations; }
+std::string RemoteChannel::peer() const { return state_->options.peer; }
+std::optional<ConnectionInfo> RemoteChannel::info() const {
   ConnectionInfo info{state_->address.service, state_->address.provider, state_->options.transport,
                       state_->options.not_faster, pending()};
   std::lock_guard lock(state_->mutex);
   info.calls = state_->last_number;
   return info;
 }
-void DdsChannel::disconnect() { state_->close(); }
-void DdsChannel::lose(const std::string& how) { state_->lose(how); }
-void DdsChannel::retire(const std::string& how) { state_->retire(how, shared_from_this()); }
+void RemoteChannel::disconnect() { state_->close(); }
+void RemoteChannel::lose(const std::string& how) { state_->lose(how); }
+void RemoteChannel::retire(const std::string& how) { state_->retire(how, shared_from_this()); }
 
-bool DdsChannel::connected() const {
+bool RemoteChannel::connected() const {
   return state_->phase == State::Phase::Open && !state_->retiring;
 }
 
-void DdsChannel::attach(std::shared_ptr<void> companion) {
+void RemoteChannel::attach(std::shared_ptr<void> companion) {
   std::lock_guard lock(state_->mutex);
   state_->companion = std::move(companion);
 }
 
-std::size_t DdsChannel::pending() const {
+std::size_t RemoteChannel::pending() const {
   std::lock_guard lock(state_->mutex);
   return state_->entries.size();
 }
 
-std::uint64_t DdsChannel::malformed() const {
+std::uint64_t RemoteChannel::malformed() const {
   std::lock_guard lock(state_->mutex);
   return state_->malformed;
 }
 
-std::uint64_t DdsChannel::forged() const {
+std::uint64_t RemoteChannel::forged() const {
   std::lock_guard lock(state_->mutex);
   return state_->forged;
 }

@@ -1,4 +1,4 @@
-#include "rpc/server/dds_server.hpp"
+#include "rpc/server/remote_server.hpp"
 
 #include <algorithm>
 #include <mutex>
@@ -7,22 +7,14 @@
 
 #include "core/clock_wait.hpp"
 #include "core/log.hpp"
-#include "core/system/interface_name.hpp"
 #include "core/threads/sole_owner.hpp"
-#include "dds_server_state.hpp"
 #include "idl/left_out.hpp"
+#include "remote_server_state.hpp"
 #include "rpc/wire/common.hpp"
 #include "skein/error.hpp"
 
 namespace skein::rpc {
 namespace {
-
-dds::Topic topic_of(const std::string& service, const char* suffix) {
-  const std::string type = scoped_interface_name(service);
-  std::string name = type;
-  for (std::size_t at; (at = name.find("::")) != std::string::npos;) name.replace(at, 2, "/");
-  return {name + suffix, type + suffix, false};
-}
 
 bool is_reserved(std::uint32_t operation) {
   return operation == wire::kOpen || operation == wire::kCancel || operation == wire::kCredit;
@@ -34,54 +26,46 @@ std::string unreadable(const std::string& what, const std::exception& why) {
 }
 
 // Returns the offset of the value's end.
-std::size_t decode(const TypeSupport& type, void* value, const dds::Sample& sample,
+std::size_t decode(const TypeSupport& type, void* value, const calls::Message& message,
                    std::size_t offset) {
-  if (!sample.lent) return type.decode(value, sample.cdr, offset);
-  if (sample.lent->value.empty()) {
+  if (!message.lent) return type.decode(value, message.bytes, offset);
+  if (message.lent->value.empty()) {
     throw Overloaded("what the call lends cannot be read here; its provider's log says why");
   }
-  idl::PuttingIn putting_in(sample.lent->value, sample.lent->position);
-  const std::size_t end = type.decode(value, sample.cdr, offset);
+  idl::PuttingIn putting_in(message.lent->value, message.lent->position);
+  const std::size_t end = type.decode(value, message.bytes, offset);
   if (!putting_in.taken()) throw InvalidArgument("what it lends belongs to no parameter");
   return end;
 }
 
 }  // namespace
 
-dds::Topic DdsAddress::request_topic() const { return topic_of(service, "_Request"); }
-dds::Topic DdsAddress::reply_topic() const { return topic_of(service, "_Reply"); }
-
-std::vector<std::string> DdsAddress::partitions() const {
-  return {provider.is_nil() ? std::string() : provider.hex()};
-}
-
-void DdsServer::State::on_sample(const dds::Sample& sample) {
-  if (sample.state != dds::InstanceState::Alive) return;
+void RemoteServer::State::on_message(const calls::Message& message) {
   wire::RequestHead head;
   try {
-    head = wire::read_request_head(sample.cdr);
+    head = wire::read_request_head(message.bytes);
   } catch (const Error& error) {
-    return on_unreadable(sample, error);
+    return on_unreadable(message, error);
   }
-  on_request(sample, head);
+  on_request(message, head);
 }
 
-void DdsServer::State::drop_malformed(const std::string& why) {
+void RemoteServer::State::drop_malformed(const std::string& why) {
   std::lock_guard lock(mutex);
   if (++counters.malformed == 1) {
     log(LogLevel::Warning, address.service, "dropped a malformed request: " + why);
   }
 }
 
-void DdsServer::State::drop_impostor() {
+void RemoteServer::State::drop_impostor() {
   drop_malformed("it is in the name of a client that did not send it");
 }
 
 // A client whose request was damaged hears so, where it can be seen which one that was.
-void DdsServer::State::on_unreadable(const dds::Sample& sample, const Error& why) {
+void RemoteServer::State::on_unreadable(const calls::Message& message, const Error& why) {
   drop_malformed(why.what());
-  const auto id = wire::read_request_id(sample.cdr);
-  if (!id || id->client != sample.writer) return;
+  const auto id = wire::read_request_id(message.bytes);
+  if (!id || id->client != message.sender) return;
   std::shared_ptr<Client> client;
   {
     std::lock_guard lock(mutex);
@@ -93,11 +77,11 @@ void DdsServer::State::on_unreadable(const dds::Sample& sample, const Error& why
 }
 
 // Who is to be answered; nobody where the request is not to be executed. A Skein client's identity
-// is that of its request writer: nobody speaks for another. That is known before its arguments are
+// is that of its sender: nobody speaks for another. That is known before its arguments are
 // decoded, which may cost much.
-std::shared_ptr<DdsServer::State::Client> DdsServer::State::sender_of(
-    const dds::Sample& sample, const wire::RequestHead& head) {
-  const bool own_name = sample.writer == head.id.client;
+std::shared_ptr<RemoteServer::State::Client> RemoteServer::State::client_of(
+    const calls::Message& message, const wire::RequestHead& head) {
+  const bool own_name = message.sender == head.id.client;
   bool known;
   {
     std::lock_guard lock(mutex);
@@ -105,7 +89,7 @@ std::shared_ptr<DdsServer::State::Client> DdsServer::State::sender_of(
     known = found != clients.end();
     if (own_name && known && !found->second->refusal) return found->second;
   }
-  const bool skein_client = known || wire::ends_with_trailer(sample.cdr);
+  const bool skein_client = known || wire::ends_with_trailer(message.bytes);
   if (!own_name && (skein_client || !foreign)) {
     drop_impostor();
     return nullptr;
@@ -119,16 +103,16 @@ std::shared_ptr<DdsServer::State::Client> DdsServer::State::sender_of(
   return nullptr;
 }
 
-void DdsServer::State::on_request(const dds::Sample& sample, const wire::RequestHead& head) {
+void RemoteServer::State::on_request(const calls::Message& message, const wire::RequestHead& head) {
   const Instant arrived = clock.now();
   received.fetch_add(1, std::memory_order_relaxed);
-  if (is_reserved(head.operation) && wire::ends_with_trailer(sample.cdr)) {
-    return on_reserved(sample, head);
+  if (is_reserved(head.operation) && wire::ends_with_trailer(message.bytes)) {
+    return on_reserved(message, head);
   }
-  const auto client = sender_of(sample, head);
+  const auto client = client_of(message, head);
   if (!client) return;
   try {
-    accept(sample, head, arrived, client);
+    accept(message, head, arrived, client);
   } catch (const Error& error) {
     refuse(client, head.id, error.code(), error.what());
   } catch (const std::exception& error) {
@@ -136,8 +120,8 @@ void DdsServer::State::on_request(const dds::Sample& sample, const wire::Request
   }
 }
 
-void DdsServer::State::accept(const dds::Sample& sample, const wire::RequestHead& head,
-                              Instant arrived, const std::shared_ptr<Client>& client) {
+void RemoteServer::State::accept(const calls::Message& message, const wire::RequestHead& head,
+                                 Instant arrived, const std::shared_ptr<Client>& client) {
   const OperationInfo* operation = service->interface_info().find_operation(head.operation);
   if (!operation) {
     throw Unimplemented(address.service + " has no operation with hash " +
@@ -148,15 +132,15 @@ void DdsServer::State::accept(const dds::Sample& sample, const wire::RequestHead
   invocation->in = {operation->in->make(), operation->in->destroy};
   std::optional<wire::RequestTrailer> trailer;
   try {
-    const std::size_t end = decode(*operation->in, invocation->in.get(), sample, head.body);
-    trailer = wire::read_request_trailer(sample.cdr, end);
+    const std::size_t end = decode(*operation->in, invocation->in.get(), message, head.body);
+    trailer = wire::read_request_trailer(message.bytes, end);
     if (trailer.has_value() != (client != foreign)) throw InvalidArgument("its end is damaged");
   } catch (const InvalidArgument& error) {
     throw InvalidArgument(unreadable("the request of " + std::string(operation->name), error));
   }
-  if (sample.lent) invocation->lent = sample.lent->use;
+  if (message.lent) invocation->lent = message.lent->use;
   invocation->caller = head.id.client;
-  invocation->connection = sample.writer;
+  invocation->connection = message.sender;
   invocation->number = head.id.number;
   invocation->deadline = saturating_sum(arrived, trailer ? remaining(*client, *trailer, arrived)
                                                          : Duration(options.default_deadline));
@@ -185,7 +169,7 @@ void DdsServer::State::accept(const dds::Sample& sample, const wire::RequestHead
   if (options.on_load) options.on_load();
   try {
     std::function<bool()> may_run;
-    if (sample.owner) may_run = [owner = sample.owner] { return owner->may_take_long(); };
+    if (message.turn) may_run = [turn = message.turn] { return turn->leave(); };
     service->submit(invocation, may_run);
   } catch (...) {
     forget(*invocation);
@@ -193,10 +177,9 @@ void DdsServer::State::accept(const dds::Sample& sample, const wire::RequestHead
   }
 }
 
-std::shared_ptr<OutgoingStream> DdsServer::State::make_stream(const std::shared_ptr<Client>& client,
-                                                              const RequestId& id,
-                                                              const Invocation& invocation,
-                                                              std::uint32_t credit) {
+std::shared_ptr<OutgoingStream> RemoteServer::State::make_stream(
+    const std::shared_ptr<Client>& client, const RequestId& id, const Invocation& invocation,
+    std::uint32_t credit) {
   const OperationInfo& operation = *invocation.operation;
   return std::make_shared<OutgoingStream>(
       operation, clock, invocation.deadline, credit,
@@ -207,11 +190,12 @@ std::shared_ptr<OutgoingStream> DdsServer::State::make_stream(const std::shared_
       });
 }
 
-void DdsServer::State::on_reserved(const dds::Sample& sample, const wire::RequestHead& head) {
-  if (sample.writer != head.id.client) return drop_impostor();
+void RemoteServer::State::on_reserved(const calls::Message& message,
+                                      const wire::RequestHead& head) {
+  if (message.sender != head.id.client) return drop_impostor();
   std::optional<wire::RequestTrailer> trailer;
   try {
-    trailer = wire::read_request_trailer(sample.cdr, head.body + 1);
+    trailer = wire::read_request_trailer(message.bytes, head.body + 1);
   } catch (const Error& error) {
     return drop_malformed(error.what());
   }
@@ -230,7 +214,7 @@ void DdsServer::State::on_reserved(const dds::Sample& sample, const wire::Reques
   }
 }
 
-std::shared_ptr<Invocation> DdsServer::State::find_active(const RequestId& id) const {
+std::shared_ptr<Invocation> RemoteServer::State::find_active(const RequestId& id) const {
   std::lock_guard lock(mutex);
   const auto call = active.find(id);
   return call == active.end() ? nullptr : call->second;
@@ -238,81 +222,71 @@ std::shared_ptr<Invocation> DdsServer::State::find_active(const RequestId& id) c
 
 // Of the time that the caller gave, what is left after the way here. Where that is none, the
 // service drops the request as expired.
-Duration DdsServer::State::remaining(Client& client, const wire::RequestTrailer& trailer,
-                                     Instant arrived) {
+Duration RemoteServer::State::remaining(Client& client, const wire::RequestTrailer& trailer,
+                                        Instant arrived) {
   if (trailer.sent == Duration::zero()) return trailer.remaining;
   std::lock_guard lock(mutex);
   return trailer.remaining - client.transit.excess(trailer.sent, arrived);
 }
 
-DdsServer::DdsServer(dds::Participant& participant, Executor& control, Clock& clock,
-                     std::shared_ptr<Service> service, const Options& options)
-    : state_(std::make_shared<State>(participant, control, clock, std::move(service), options)) {
+RemoteServer::RemoteServer(calls::ProviderPort& port, Executor& control, Clock& clock,
+                           std::shared_ptr<Service> service, const Options& options)
+    : state_(std::make_shared<State>(port, control, clock, std::move(service), options)) {
   State& state = *state_;
   if (options.foreign_clients) {
     state.foreign = state.make_client();
-    state.foreign->writer = SharedWriters::share(
-        participant.create_writer(state.address.reply_topic(),
-                                  call_qos(state.address.representation, {""})),
-        state.writers.hold());
+    state.foreign->sender =
+        SharedUse::share(port.send_replies(state.address, Guid{}), state.senders.hold());
   }
-  std::vector<std::string> partitions = state.address.partitions();
-  if (options.foreign_clients) partitions.push_back("");
-  dds::ReaderListener listener;
-  listener.on_data = [&state](dds::Reader& reader) {
-    reader.take([&state](const dds::Sample& sample) { state.on_sample(sample); });
-  };
-  listener.on_matched = [&state](const Guid& writer, bool matched) {
-    state.on_request_writer(writer, matched);
-  };
-  state.requests = participant.create_reader(
-      state.address.request_topic(), call_qos(state.address.representation, std::move(partitions)),
-      std::move(listener));
+  state.requests = port.receive_requests(
+      state.address, options.foreign_clients,
+      {[&state](const calls::Message& message) { state.on_message(message); },
+       [&state](const Guid& sender, bool found) { state.on_request_sender(sender, found); }});
 }
 
-DdsServer::~DdsServer() {
-  // Clients learn of the reader's end before a call that is told to end could answer them.
+RemoteServer::~RemoteServer() {
+  // Clients learn of the receiver's end before a call that is told to end could answer them.
   state_->requests.reset();
   state_->service->close();
   std::vector<TimerId> timers;
   {
-    // The writers end here, where their listeners can be waited for: a listener that still runs may
+    // The senders end here, where their listeners can be waited for: a listener that still runs may
     // be the last to let go of its client, and of the state.
-    std::vector<std::shared_ptr<dds::Writer>> writers;
+    std::vector<std::shared_ptr<calls::Sender>> senders;
     std::unordered_map<Guid, std::shared_ptr<State::Client>> clients;
     std::lock_guard lock(state_->mutex);
     state_->closed = true;
     clients.swap(state_->clients);
     const auto end = [&](State::Client& client) {
-      writers.push_back(std::move(client.writer));
+      senders.push_back(std::move(client.sender));
       timers.insert(timers.end(), {client.patience, client.retry});
     };
     for (const auto& [key, client] : clients) end(*client);
     if (state_->foreign) end(*state_->foreign);
   }
   for (const TimerId timer : timers) state_->clock.cancel(timer);
-  state_->writers.await_end();
+  state_->senders.await_end();
   await_sole_owner(state_);
 }
 
-std::shared_ptr<dds::CallerDelivery> DdsServer::delivery() const {
+std::shared_ptr<calls::CallerDelivery> RemoteServer::delivery() const {
   return state_->requests->caller_delivery();
 }
 
 // Under the lock.
-std::size_t DdsServer::State::connected() const {
+std::size_t RemoteServer::State::connected() const {
   return static_cast<std::size_t>(std::count_if(
       clients.begin(), clients.end(), [](const auto& each) { return !each.second->refusal; }));
 }
 
-bool DdsServer::await_clients_gone(Instant deadline) {
+bool RemoteServer::await_clients_gone(Instant deadline) {
   std::unique_lock lock(state_->mutex);
   state_->leaving = true;
   return wait_until(state_->clock, deadline, lock, state_->less_to_do,
                     [&] { return state_->connected() == 0 && state_->active.empty(); });
 }
 
-DdsServer::Counters DdsServer::counters() const {
+RemoteServer::Counters RemoteServer::counters() const {
   std::lock_guard lock(state_->mutex);
   Counters counters = state_->counters;
   counters.received = state_->received;

@@ -1,38 +1,21 @@
 #pragma once
 
 #include <memory>
-#include <string>
 
-#include "dds/port/port.hpp"
+#include "call_port/call_port.hpp"
 #include "rpc/service/service.hpp"
 
 namespace skein::rpc {
 
-/// Where a provider of a service is reached.
-struct DdsAddress {
-  /// The interface's name in any spelling; the topics are `AE_navigator/IPlanner_Request` and
-  /// `AE_navigator/IPlanner_Reply`.
-  std::string service;
-  /// The partition of the provider's request reader; nil means the default partition, in which
-  /// peers that are not built with Skein live.
-  Guid provider;
-  /// How its requests and replies travel.
-  Representation representation = Representation::Xcdr1;
-
-  dds::Topic request_topic() const;
-  dds::Topic reply_topic() const;
-  std::vector<std::string> partitions() const;
-};
-
-/// Offers a Service over DDS (DDS-RPC, basic mapping). Requests are taken and decoded on the
-/// vendor's thread, executed on the service's executor and answered from there; everything that
-/// creates endpoints or refuses requests happens on `control`. Each connected client has a reply
-/// writer in a partition of its own, so a client that stops reading holds up nobody else. A reply
-/// that finds no room there is kept, and sent within its call's deadline.
+/// Offers a Service to other processes (messages: DDS-RPC, basic mapping). Requests are decoded on
+/// the port's thread, executed on the service's executor and answered from there; everything that
+/// connects to a client or refuses requests happens on `control`. Each connected client has a
+/// sender of its own, so a client that stops reading holds up nobody else. A reply that finds no
+/// room there is kept, and sent within its call's deadline.
 ///
 /// Peers (participants) share what a server has: sessions, places in its queues, and the turns of
 /// its threads. What one of them asks for beyond its share is refused and counted.
-class DdsServer {
+class RemoteServer {
  public:
   /// Sessions in all. A peer may have no more than are left, so that there is one for a newcomer.
   static constexpr std::size_t kMaxClients = 1024;
@@ -41,7 +24,7 @@ class DdsServer {
   static constexpr std::size_t kMaxUnsent = 256 << 20;
 
   struct Options {
-    /// Also serve the default partition. Off for managed interfaces.
+    /// Also serve clients that are not built with Skein. Off for managed interfaces.
     bool foreign_clients = true;
     /// What a client that states no deadline gets.
     Duration default_deadline = std::chrono::seconds(60);
@@ -62,17 +45,17 @@ class DdsServer {
     std::size_t active = 0;         ///< Requests that wait or run now.
   };
 
-  /// `participant`, `control` and `clock` outlive the server. Throws what the port throws.
-  DdsServer(dds::Participant& participant, Executor& control, Clock& clock,
-            std::shared_ptr<Service> service, const Options& options);
-  /// Ends all sessions; nothing of the participant is in use any more. Not from a task of `control`
+  /// `port`, `control` and `clock` outlive the server. Throws what the port throws.
+  RemoteServer(calls::ProviderPort& port, Executor& control, Clock& clock,
+               std::shared_ptr<Service> service, const Options& options);
+  /// Ends all sessions; nothing of the port is in use any more. Not from a task of `control`
   /// or of the service's executor.
-  ~DdsServer();
+  ~RemoteServer();
 
   Counters counters() const;
 
-  /// By which a thread that waits for requests takes them; see dds::Reader.
-  std::shared_ptr<dds::CallerDelivery> delivery() const;
+  /// By which a thread that waits for requests takes them; see calls::Receiver.
+  std::shared_ptr<calls::CallerDelivery> delivery() const;
 
   /// The service is about to end, and its clients have been told: requests of foreign ones, who do
   /// not hear of it, are refused. Waits until no client is connected and no request waits or runs;

@@ -3,9 +3,9 @@
 #include <utility>
 
 #include "dds/port/sample_format.hpp"
-#include "dds_channel_state.hpp"
 #include "idl/encode_value.hpp"
 #include "idl/left_out.hpp"
+#include "remote_channel_state.hpp"
 #include "rpc/wire/common.hpp"
 #include "skein/error.hpp"
 #include "skein/introspection.idl.hpp"
@@ -19,7 +19,7 @@ constexpr std::chrono::milliseconds kToTellOfRoom{20};
 
 }  // namespace
 
-void DdsChannel::State::start(const std::shared_ptr<PendingCall>& call, const void* in) {
+void RemoteChannel::State::start(const std::shared_ptr<PendingCall>& call, const void* in) {
   try {
     start_here(call, in);
   } catch (...) {
@@ -27,15 +27,15 @@ void DdsChannel::State::start(const std::shared_ptr<PendingCall>& call, const vo
   }
 }
 
-void DdsChannel::State::call(const OperationInfo& operation, const void* in, void* out,
-                             const CallTime& time) {
+void RemoteChannel::State::call(const OperationInfo& operation, const void* in, void* out,
+                                const CallTime& time) {
   const auto call = make_shared_in_call_memory<PendingCall>(operation, out, time.deadline, true);
   start_here(call, in);
   call->wait();
   if (auto error = call->take_error()) std::rethrow_exception(std::move(error));
 }
 
-void DdsChannel::State::start_here(const std::shared_ptr<PendingCall>& call, const void* in) {
+void RemoteChannel::State::start_here(const std::shared_ptr<PendingCall>& call, const void* in) {
   if (options.spin.count() > 0) call->set_spin(options.spin);
   bool sent = false;
   Entered entered;
@@ -50,7 +50,7 @@ void DdsChannel::State::start_here(const std::shared_ptr<PendingCall>& call, con
   const std::uint64_t number = entered.number;
   call->attempt([&] {
     const std::uint64_t told_before = told;
-    sent = send(*entered.writer, *call, number, in);
+    sent = send(*entered.sender, *call, number, in);
     // The call ended while it was sent: the server may have heard of its end first.
     if (sent && told != told_before && call->claimed()) tell_server(number);
   });
@@ -60,8 +60,9 @@ void DdsChannel::State::start_here(const std::shared_ptr<PendingCall>& call, con
   call->finish();
 }
 
-// The call is known before its request leaves: a reply may be here before write() returns.
-DdsChannel::State::Entered DdsChannel::State::enter(const std::shared_ptr<PendingCall>& call) {
+// The call is known before its request leaves: a reply may be here before send() returns.
+RemoteChannel::State::Entered RemoteChannel::State::enter(
+    const std::shared_ptr<PendingCall>& call) {
   std::unique_lock lock(mutex);
   if (phase == Phase::Lost) throw NotSent("no connection to " + options.peer + ": " + lost_how);
   if (phase != Phase::Open)
@@ -95,14 +96,14 @@ DdsChannel::State::Entered DdsChannel::State::enter(const std::shared_ptr<Pendin
 
 // Before a request waits for room. The other side may wait, too, until somebody has taken answers
 // to earlier ones, and nobody does who is here.
-void DdsChannel::State::on_full() {
+void RemoteChannel::State::on_full() {
   std::lock_guard lock(mutex);
   if (answers && entries.size() > 1) answers->hand_over();
 }
 
 // Under the lock: expire_due() will run then, or before. Returns a timer that nobody needs any
 // more.
-TimerId DdsChannel::State::look_at(Instant deadline) {
+TimerId RemoteChannel::State::look_at(Instant deadline) {
   if (deadline >= timer_due) return 0;
   timer_due = deadline;
   return std::exchange(timer, clock.call_at(deadline, [state = weak_from_this()] {
@@ -110,7 +111,7 @@ TimerId DdsChannel::State::look_at(Instant deadline) {
   }));
 }
 
-void DdsChannel::State::expire_due() {
+void RemoteChannel::State::expire_due() {
   std::vector<std::uint64_t> due;
   {
     std::lock_guard lock(mutex);
@@ -131,14 +132,14 @@ void DdsChannel::State::expire_due() {
 }
 
 // A caller that waits for the answer also waits for room, as long as it has time; others are told.
-// The writer itself waits before it throws: tries are counted, too, for a clock that may stand
+// The sender itself waits before it throws: tries are counted, too, for a clock that may stand
 // still. The last one is over before the deadline is: what was not sent does not end as TimedOut.
-template <class Write>
-auto DdsChannel::State::in_time(const PendingCall& call, Write write) const {
-  const Duration a_try = dds::Qos().max_blocking;
+template <class Send>
+auto RemoteChannel::State::in_time(const PendingCall& call, Send send) const {
+  const Duration a_try = calls::kPatience;
   for (std::optional<Duration> left;; *left -= a_try) {
     try {
-      return write();
+      return send();
     } catch (const Overloaded&) {
       if (!call.blocking()) throw;
       // The clock is asked only now that there is need.
@@ -149,8 +150,8 @@ auto DdsChannel::State::in_time(const PendingCall& call, Write write) const {
 }
 
 // False, and nothing is sent, if the call has ended: its server would be told of its end first.
-bool DdsChannel::State::send(dds::Writer& writer, const PendingCall& call, std::uint64_t number,
-                             const void* in) {
+bool RemoteChannel::State::send(calls::Sender& sender, const PendingCall& call,
+                                std::uint64_t number, const void* in) {
   thread_local Bytes message;
   std::shared_ptr<LoanMemory> lent;
   std::size_t position = 0;
@@ -166,18 +167,18 @@ bool DdsChannel::State::send(dds::Writer& writer, const PendingCall& call, std::
                           call.operation());
   }
   const bool sent =
-      lent && in_time(call, [&] { return writer.write_lending(message, lent, position); });
+      lent && in_time(call, [&] { return sender.send_lending(message, lent, position); });
   if (lent && !sent) put_request(message, call, number, in);
   if (!sent) {
     const auto left = [this, &call] { return call.deadline() - clock.now() - kToTellOfRoom; };
-    in_time(call, [&] { return writer.write_within(left, message); });
+    in_time(call, [&] { return sender.send(message, left); });
   }
   if (message.capacity() > kKeptCapacity) message = Bytes();
   return true;
 }
 
-void DdsChannel::State::put_request(Bytes& message, const PendingCall& call, std::uint64_t number,
-                                    const void* in) const {
+void RemoteChannel::State::put_request(Bytes& message, const PendingCall& call,
+                                       std::uint64_t number, const void* in) const {
   wire::begin_request(message, {client, number}, call.operation().hash, address.representation);
   idl::encode_value(*call.operation().in, in, message);
   if (message.size() > dds::kLargestSample) {
@@ -199,10 +200,10 @@ void DdsChannel::State::put_request(Bytes& message, const PendingCall& call, std
                                     now.time_since_epoch()});
 }
 
-bool DdsChannel::State::is_open() const { return phase == Phase::Open; }
+bool RemoteChannel::State::is_open() const { return phase == Phase::Open; }
 
 // The call, which is not known by its number any more; a stream stays known until its last reply.
-std::shared_ptr<PendingCall> DdsChannel::State::remove(std::uint64_t number, Keep keep) {
+std::shared_ptr<PendingCall> RemoteChannel::State::remove(std::uint64_t number, Keep keep) {
   std::lock_guard lock(mutex);
   const auto found = entries.find(number);
   if (found == entries.end()) return nullptr;
@@ -213,7 +214,7 @@ std::shared_ptr<PendingCall> DdsChannel::State::remove(std::uint64_t number, Kee
   return call;
 }
 
-void DdsChannel::State::expire(std::uint64_t number) {
+void RemoteChannel::State::expire(std::uint64_t number) {
   const auto call = remove(number);
   if (!call || !call->claim()) return;
   std::string hint;
@@ -229,7 +230,7 @@ void DdsChannel::State::expire(std::uint64_t number) {
   tell_server(number);
 }
 
-void DdsChannel::State::abandon(std::uint64_t number) {
+void RemoteChannel::State::abandon(std::uint64_t number) {
   const auto call = remove(number);
   if (!call) return;
   note_end(number, call->operation(),
@@ -237,7 +238,7 @@ void DdsChannel::State::abandon(std::uint64_t number) {
   tell_server(number);
 }
 
-void DdsChannel::State::tell_server(std::uint64_t number) {
+void RemoteChannel::State::tell_server(std::uint64_t number) {
   ++told;                       // before it is
   std::lock_guard lock(mutex);  // once closed, `control` may be gone
   if (phase != Phase::Open) return;
@@ -253,7 +254,7 @@ void DdsChannel::State::tell_server(std::uint64_t number) {
 }
 
 // On the thread that takes the results: one that is held up here takes none anyway.
-void DdsChannel::State::grant(std::uint64_t number, std::uint32_t count) {
+void RemoteChannel::State::grant(std::uint64_t number, std::uint32_t count) {
   try {
     send_reserved(wire::kCredit, {.target = number, .credit = count});
   } catch (const Unavailable&) {
@@ -262,23 +263,23 @@ void DdsChannel::State::grant(std::uint64_t number, std::uint32_t count) {
 }
 
 // About a call; nothing is to be said to a server that is gone.
-void DdsChannel::State::send_reserved(std::uint32_t operation,
-                                      const wire::RequestTrailer& trailer) {
-  std::shared_ptr<dds::Writer> writer;
+void RemoteChannel::State::send_reserved(std::uint32_t operation,
+                                         const wire::RequestTrailer& trailer) {
+  std::shared_ptr<calls::Sender> sender;
   {
     std::lock_guard lock(mutex);
     if (phase != Phase::Open) return;
-    writer = requests;
+    sender = requests;
   }
   Bytes message;
   wire::begin_request(message, {client, 0}, operation, address.representation);
   wire::append_default_branch(message);
   wire::append_trailer(message, trailer);
-  writer->write(message);
+  sender->send(message);
 }
 
-void DdsChannel::State::note_end(std::uint64_t number, const OperationInfo& operation,
-                                 const std::exception_ptr& error) {
+void RemoteChannel::State::note_end(std::uint64_t number, const OperationInfo& operation,
+                                    const std::exception_ptr& error) {
   if (options.journal)
     options.journal->note_end(false, client, number, address.service, operation, error);
 }
