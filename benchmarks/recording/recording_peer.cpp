@@ -12,6 +12,7 @@
 #include "harness/peer.hpp"
 #include "introspection/topic_tap.hpp"
 #include "recording/recorder.hpp"
+#include "skein/detail/entity_access.hpp"
 #include "skein/error.hpp"
 
 namespace skein::benchmarks {
@@ -67,7 +68,7 @@ class Counter {
       std::lock_guard lock(mutex_);
       if (!topic.has_publisher() || counts_.contains(topic.name)) continue;
       std::atomic<std::uint64_t>& count = counts_[topic.name];
-      readers_.push_back(tap_topic(entity_.participant(), topic, topic.systems(),
+      readers_.push_back(tap_topic(EntityAccess::participant(entity_), topic, topic.systems(),
                                    {[&count](const dds::Sample&) { ++count; }}));
     }
   }

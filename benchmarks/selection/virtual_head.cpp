@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "selection/service_history.hpp"
-#include "skein/head_options.hpp"
+#include "skein/entity.hpp"
 
 namespace skein::benchmarks::selection {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "selection/scenario.hpp"
 #include "skein/clock.hpp"
-#include "skein/selection.hpp"
+#include "skein/detail/history.hpp"
 
 namespace skein::benchmarks::selection {
 

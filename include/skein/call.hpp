@@ -23,6 +23,12 @@ namespace skein {
 
 /// An asynchronous call and its result. Move-only; destroying it cancels the call. Use each call
 /// once: by get(), then() or co_await; a call that was used or moved from throws InvalidArgument.
+///
+/// ```cpp
+/// auto first = surveyor.async_minutes(kField);  // returns at once
+/// auto second = surveyor.async_minutes(kField);
+/// const double both = first.get() + second.get();
+/// ```
 template <class Result>
 class [[nodiscard]] Call {
   using Stored = std::conditional_t<std::is_void_v<Result>, char, Result>;

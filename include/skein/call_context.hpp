@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <atomic>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "skein/clock.hpp"
+#include "skein/detail/waiting_services.hpp"
 #include "skein/guid.hpp"
 
 namespace skein {
@@ -24,17 +24,8 @@ class Session {
 /// inherit the chain.
 class CallContext {
  public:
-  /// The services that wait for the answer: first the chain of `outer`, if this call runs on the
-  /// thread of another one, or else those that the request names; last this service, whose identity
-  /// is `strand`, unless it is nil: a call that is answered later blocks no thread.
-  struct Waiting {
-    const CallContext* outer = nullptr;
-    std::span<const Guid> named{};
-    Guid strand{};
-  };
-
   /// The objects that the arguments refer to must outlive the context.
-  CallContext(const Clock& clock, Instant deadline, Guid caller, const Waiting& waiting,
+  CallContext(const Clock& clock, Instant deadline, Guid caller, const WaitingServices& waiting,
               Session* session, const std::atomic<bool>* cancelled)
       : clock_(clock),
         deadline_(deadline),
@@ -76,7 +67,7 @@ class CallContext {
   const Clock& clock_;
   Instant deadline_;
   Guid caller_;
-  Waiting waiting_;
+  WaitingServices waiting_;
   Session* session_;
   const std::atomic<bool>* cancelled_;
 };

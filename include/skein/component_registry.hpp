@@ -22,6 +22,12 @@ class SelectionStrategy;
 /// The implementations that a process can run, by component name, and selection strategies in
 /// addition to Skein's own. `main()`, or a plugin's `skein_register_components`, fills a registry;
 /// there is no global one. Not thread-safe.
+///
+/// ```cpp
+/// registry.add_csp<survey::IPlanner>("Rows", [](const skein::ParameterValues&) {
+///   return std::make_shared<survey::IPlanner::Skeleton>(std::make_shared<Rows>());
+/// });
+/// ```
 class ComponentRegistry {
  public:
   /// A Body: the public service of an entity.

@@ -7,9 +7,8 @@
 
 #include "skein/call.hpp"
 #include "skein/connector.hpp"
-#include "skein/publisher.hpp"
 #include "skein/stream.hpp"
-#include "skein/subscription.hpp"
+#include "skein/topics.hpp"
 #include "skein/types.idl.hpp"
 
 namespace skein {

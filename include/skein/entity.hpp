@@ -1,5 +1,7 @@
 #pragma once
 
+#include <chrono>
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -9,10 +11,9 @@
 #include <vector>
 
 #include "skein/connector.hpp"
-#include "skein/head_options.hpp"
+#include "skein/detail/circuit_breaker.hpp"
 #include "skein/process.hpp"
-#include "skein/publisher.hpp"
-#include "skein/subscription.hpp"
+#include "skein/topics.hpp"
 #include "skein/vendor.hpp"
 
 namespace skein::brokerless_discovery {
@@ -24,7 +25,32 @@ struct ServiceStatistics;
 
 namespace skein {
 
+class SelectionStrategy;
+struct Candidate;
 class Head;
+
+/// How a Head decides. A mission profile sets all fields but `strategies`, which its plugins add,
+/// and `on_hang`.
+struct HeadOptions {
+  /// Strategy for requests whose session names none.
+  std::string strategy = "declared";
+  /// Strategies in addition to Skein's own; `strategy` may name one of them.
+  std::vector<std::shared_ptr<const SelectionStrategy>> strategies{};
+  /// File of the history: read at the start if it exists, written at the end. Empty: none.
+  std::string history{};
+  /// File to which each decision is appended as a line of JSON; at 64 MiB `x.jsonl` becomes
+  /// `x.1.jsonl`, in place of an earlier one. Empty: none.
+  std::string log{};
+  /// Share of decisions in which `learned` may try a CSP only to learn about it.
+  double exploration = 0.02;
+  CircuitBreaker::Rules breaker{};
+  /// The peer is degraded if this many CSPs in its process do not return.
+  std::size_t max_stuck = 3;
+  /// Called on the performing thread when a CSP in another process has timed out after at least
+  /// four times its expected time. The CSP is quarantined; its launcher may restart it. Must return
+  /// soon.
+  std::function<void(const Candidate&)> on_hang{};
+};
 
 struct EntityOptions {
   /// Letters, digits, `_`, `-` and `.`; the same for `system`.
@@ -138,6 +164,12 @@ struct Refused {
 /// subscribe. Thread-safe. Destroy publishers and subscriptions before the entity; otherwise the
 /// program may abort. Proxies, calls and streams may outlive it (see ~Entity). The entity releases
 /// the implementations that it provided.
+///
+/// ```cpp
+/// skein::Entity guest({.name = "guest", .vendor = skein::dds::load_vendor(vendor)});
+/// auto greeter = guest.connect<greeting::IGreeter>();
+/// std::puts(greeter.greet("world").c_str());
+/// ```
 class Entity {
  public:
   /// Joins the mission. Throws InvalidArgument for an invalid name or option, and what
@@ -256,10 +288,11 @@ class Entity {
   }
 
   /// Publishes on the topic `name`, in the entity's own system unless `qos` names others, and with
-  /// what EntityOptions::adjust_topic changes. Throws as Publisher() does.
+  /// what EntityOptions::adjust_topic changes. Throws InvalidArgument for an invalid name or QoS,
+  /// and for a name that the entity already uses with another type.
   template <class T>
   Publisher<T> publisher(const std::string& name, const TopicQos& qos = {}) {
-    return Publisher<T>(participant(), name, qos_of(name, qos), &topic_register());
+    return Publisher<T>(topic_writer(name, topics::topic_type<T>(), qos));
   }
 
   /// Subscribes to the topic `name`, likewise. The callback runs on one thread for all
@@ -268,26 +301,29 @@ class Entity {
   template <class T>
   Subscription<T> subscription(const std::string& name, const TopicQos& qos = {},
                                typename Subscription<T>::Callback callback = nullptr,
-                               SubscriptionOptions options = {}) {
-    return Subscription<T>(participant(), topic_executor(), name, qos_of(name, qos),
-                           std::move(callback), std::move(options), &topic_register());
+                               const SubscriptionOptions& options = {}) {
+    return Subscription<T>(topic_reader(name, topics::topic_type<T>(), qos,
+                                        topics::consumer_of(std::move(callback)), options));
   }
 
   Connector& connector() noexcept;
   brokerless_discovery::Broker& broker() noexcept;
   Head& head() noexcept;
   Clock& clock() noexcept;
-  dds::Participant& participant() noexcept;
 
  private:
-  friend class DynamicPublisher;
-  friend class DynamicSubscription;
-  TopicQos qos_of(const std::string& topic, TopicQos qos) const;
-  Executor& topic_executor();
-  topics::Register& topic_register() noexcept;
-
+  friend struct EntityAccess;
   struct Provided;
   struct State;
+
+  std::unique_ptr<topics::TopicWriter> topic_writer(const std::string& name,
+                                                    const topics::TopicType& type,
+                                                    const TopicQos& qos);
+  std::unique_ptr<topics::TopicReader> topic_reader(const std::string& name,
+                                                    const topics::TopicType& type,
+                                                    const TopicQos& qos,
+                                                    topics::TopicReader::Consumer consumer,
+                                                    SubscriptionOptions options);
   bool drain_some(bool managed, Instant deadline);
 
   template <class Interface>

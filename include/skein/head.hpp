@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "skein/connector.hpp"
-#include "skein/decision.hpp"
+#include "skein/detail/history.hpp"
 #include "skein/detail/task_run.hpp"
-#include "skein/head_options.hpp"
+#include "skein/entity.hpp"
 
 namespace skein::rpc {
 struct OpenRequest;
@@ -39,6 +39,11 @@ class NoneAccepted : public Internal {
 /// again until it has returned. On the caller's thread a blocking call takes less than a
 /// microsecond, but the Head waits until it returns: use this only for calls that are bounded by
 /// construction.
+///
+/// ```cpp
+/// drone.head().add_strategy(std::make_shared<MostReliable>());
+/// auto navigator = station.connect<survey::INavigator>({.strategy = "most_reliable"});
+/// ```
 class Head {
  public:
   struct Current {

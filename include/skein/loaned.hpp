@@ -24,6 +24,13 @@ namespace skein {
 /// What is in it must stay as it is from a call's begin to its answer. Where a call ends without
 /// one, in_use() tells whether the implementation may still read it. It may be destroyed at any
 /// time: readers keep the memory. Not thread-safe, as any value.
+///
+/// ```cpp
+/// auto archive = station.connect<survey::IArchive>();
+/// skein::Loaned<survey::Image> image;  // once, for many calls
+/// image->pixels.fill(128);
+/// const std::uint32_t number = archive.store(*image);
+/// ```
 template <Lendable T>
 class Loaned {
  public:

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -9,14 +10,60 @@
 
 #include "skein/clock.hpp"
 #include "skein/detail/circuit_breaker.hpp"
-#include "skein/detail/history.hpp"
 #include "skein/guid.hpp"
+#include "skein/introspection.idl.hpp"
 
 // The paper's Algorithm Selection pattern (Figure 7): a StrategyFactory makes the SelectionStrategy
 // that a session names; a CandidateIterator returns the CSPs in the order that the strategy
 // decides; each CSP is an Adapter, an algorithm behind a managed interface, and is called through
 // that interface's Proxy.
 namespace skein {
+
+/// A property of a request that may matter for the choice, as a number: `{"cells", 65536}`.
+struct Feature {
+  std::string name;
+  double value = 0;
+  bool operator==(const Feature&) const = default;
+};
+using Features = std::vector<Feature>;
+
+/// A run of at least this weight is on a similar request; others are all that there is.
+inline constexpr double kSimilar = 0.1;
+
+/// A past run.
+struct SimilarRun {
+  std::uint64_t request = 0;  ///< The request's number: equal for CSPs that ran on the same one.
+  /// 0 to 1: how similar; less if it ran only since others had failed, which most requests do not
+  /// come to; 0 if the request is only there since another CSP ran on it, too.
+  double weight = 0;
+  Duration took{};
+  bool accepted = false;
+  bool late = false;  ///< Given up: an answer would have taken longer than `took`.
+  std::optional<double> quality;
+  bool operator==(const SimilarRun&) const = default;
+};
+
+/// What a CSP's own history predicts for a request.
+struct Prediction {
+  std::vector<SimilarRun> runs;  ///< The most similar first; 1 to 16 with a weight.
+  std::size_t similar = 0;       ///< How many of these have a weight of at least kSimilar.
+  /// Time to an accepted result, by weight; unset if none of these runs was accepted or late. A
+  /// late run counts with twice its time.
+  std::optional<Duration> median;
+  std::optional<Duration> p95;
+  std::optional<double> quality;  ///< Mean of the measured values, by weight.
+  double reliability = 1;         ///< Share of accepted results, with one success added.
+  std::uint64_t idle = 0;         ///< Requests since it last ran.
+  bool operator==(const Prediction&) const = default;
+};
+
+/// How many decisions were made before.
+struct PastDecisions {
+  std::uint64_t made = 0;
+  std::uint64_t explored = 0;  ///< Of these, those that tried a CSP only to learn about it.
+
+  bool operator==(const PastDecisions&) const = default;
+};
 
 /// A CSP that could run the task, with what it declares and what is known about it.
 struct Candidate {
@@ -64,7 +111,7 @@ struct Situation {
   Duration remaining{};
   /// The share of decisions that may try a CSP only to learn about it, and the decisions so far.
   double exploration = 0;
-  History::Decisions past{};
+  PastDecisions past{};
   Utility utility{};
   std::vector<Tried> tried{};  ///< In this order. Filled by CandidateIterator.
 };
@@ -159,5 +206,20 @@ class CandidateIterator {
   std::vector<Candidate> left_;
   Situation situation_;
 };
+
+/// In plain words: `accepted`, `timed out`.
+const char* in_words(introspection::Outcome outcome) noexcept;
+
+/// Whether both chose the same for the same reasons and for as long, whatever came of it.
+bool same_choice(const introspection::Attempt& one, const introspection::Attempt& other);
+
+/// Makes a record's choices again, from what the record says was known. Returns the attempts with
+/// these choices; they equal the record's attempts bit for bit, unless the strategy has changed.
+/// Throws InvalidArgument for an unknown strategy and for an inconsistent record.
+std::vector<introspection::Attempt> replay(const introspection::Decision& record,
+                                           const StrategyFactory& strategies = {});
+
+/// The decision in plain words, in several lines.
+std::string explain(const introspection::Decision& record);
 
 }  // namespace skein

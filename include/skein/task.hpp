@@ -11,7 +11,6 @@
 #include "skein/call.hpp"
 #include "skein/evaluation.hpp"
 #include "skein/selection.hpp"
-#include "skein/synthesis.hpp"
 
 namespace skein {
 
@@ -99,6 +98,15 @@ class TaskFunction
 };
 
 /// A task for a CSP that the Head selects. Its functions run on the thread that performs it.
+///
+/// ```cpp
+/// skein::Task<survey::IPlanner, survey::Track> task;
+/// task.request = "track";
+/// task.features = {{"area_m2", area_m2}};
+/// task.run = [&](survey::IPlanner::Proxy& planner, skein::Duration) {
+///   return planner.plan(area);
+/// };
+/// ```
 template <class Interface, class Result>
 struct Task : TaskOptions {
   /// Required. Calls the CSP by its proxy, whose calls time out after `budget`. With several CSPs

@@ -6,6 +6,7 @@
 #include "idl/types/dynamic_codec.hpp"
 #include "idl/types/dynamic_support.hpp"
 #include "skein/detail/codec.hpp"
+#include "skein/detail/entity_access.hpp"
 #include "skein/dynamic.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
@@ -61,9 +62,7 @@ DynamicPublisher::DynamicPublisher(Entity& entity, const std::string& topic,
                                    const std::string& type, const types::TypeSystem& known,
                                    const TopicQos& qos)
     : type_(topic_type(type, known)),
-      writer_(std::make_unique<topics::TopicWriter>(entity.participant(), topic, type_,
-                                                    entity.qos_of(topic, qos),
-                                                    &entity.topic_register())) {}
+      writer_(EntityAccess::topic_writer(entity, topic, type_, qos)) {}
 
 void DynamicPublisher::publish(const std::string& json) {
   const DynamicValue value{static_cast<const DynamicSupport*>(type_.support), json};
@@ -85,24 +84,22 @@ DynamicSubscription::DynamicSubscription(Entity& entity, const std::string& topi
                                          const std::string& type, const types::TypeSystem& known,
                                          const TopicQos& qos, Callback callback,
                                          SubscriptionOptions options)
-    : reader_(std::make_unique<topics::TopicReader>(
-          entity.participant(), entity.topic_executor(), topic, topic_type(type, known),
-          entity.qos_of(topic, qos),
+    : reader_(EntityAccess::topic_reader(
+          entity, topic, topic_type(type, known), qos,
           [callback = std::move(callback)](const void* value) {
             callback(static_cast<const DynamicValue*>(value)->json);
           },
-          std::move(options), &entity.topic_register())) {}
+          std::move(options))) {}
 
 DynamicSubscription::DynamicSubscription(Entity& entity, const std::string& topic,
                                          const std::string& type, const types::TypeSystem& known,
                                          const TopicQos& qos, CdrCallback callback,
                                          SubscriptionOptions options)
-    : reader_(std::make_unique<topics::TopicReader>(
-          entity.participant(), entity.topic_executor(), topic,
-          topic_type(type, known, idl::DynamicForm::Cdr), entity.qos_of(topic, qos),
+    : reader_(EntityAccess::topic_reader(
+          entity, topic, topic_type(type, known, idl::DynamicForm::Cdr), qos,
           [callback = std::move(callback)](const void* value) {
             callback(static_cast<const DynamicValue*>(value)->cdr);
           },
-          std::move(options), &entity.topic_register())) {}
+          std::move(options))) {}
 
 }  // namespace skein

@@ -35,6 +35,7 @@
 #include "rpc/service/service.hpp"
 #include "same_host/call_ports.hpp"
 #include "skein/describe.hpp"
+#include "skein/detail/entity_access.hpp"
 #include "skein/discovery.idl.hpp"
 #include "skein/error.hpp"
 #include "skein/head.hpp"
@@ -233,6 +234,20 @@ struct Entity::State {
     return participant_options;
   }
 
+  TopicQos qos_of(const std::string& topic, TopicQos qos) const {
+    if (qos.systems.empty()) qos.systems = {options.system};
+    if (options.adjust_topic) options.adjust_topic(topic, qos);
+    return qos;
+  }
+
+  Executor& topic_executor() {
+    std::lock_guard lock(mutex);
+    if (!topics) {
+      topics = std::make_unique<ThreadExecutor>("skein-topics", ThreadExecutor::Tasks::Short);
+    }
+    return *topics;
+  }
+
   std::string place() const {
     if (options.vendor->name() != dds::kLoopback) return dds::place_of(participant_options());
     return "domain " + std::to_string(options.domain) + " of the loopback network";
@@ -413,22 +428,25 @@ Connector& Entity::connector() noexcept { return state_->connector; }
 Broker& Entity::broker() noexcept { return state_->broker; }
 Head& Entity::head() noexcept { return state_->head; }
 Clock& Entity::clock() noexcept { return state_->process->clock(); }
-dds::Participant& Entity::participant() noexcept { return *state_->participant; }
-
-TopicQos Entity::qos_of(const std::string& topic, TopicQos qos) const {
-  if (qos.systems.empty()) qos.systems = {state_->options.system};
-  if (state_->options.adjust_topic) state_->options.adjust_topic(topic, qos);
-  return qos;
+dds::Participant& EntityAccess::participant(Entity& entity) noexcept {
+  return *entity.state_->participant;
 }
 
-topics::Register& Entity::topic_register() noexcept { return state_->topic_register; }
+std::unique_ptr<topics::TopicWriter> Entity::topic_writer(const std::string& name,
+                                                          const topics::TopicType& type,
+                                                          const TopicQos& qos) {
+  return std::make_unique<topics::TopicWriter>(*state_->participant, name, type,
+                                               state_->qos_of(name, qos), &state_->topic_register);
+}
 
-Executor& Entity::topic_executor() {
-  std::lock_guard lock(state_->mutex);
-  if (!state_->topics) {
-    state_->topics = std::make_unique<ThreadExecutor>("skein-topics", ThreadExecutor::Tasks::Short);
-  }
-  return *state_->topics;
+std::unique_ptr<topics::TopicReader> Entity::topic_reader(const std::string& name,
+                                                          const topics::TopicType& type,
+                                                          const TopicQos& qos,
+                                                          topics::TopicReader::Consumer consumer,
+                                                          SubscriptionOptions options) {
+  return std::make_unique<topics::TopicReader>(*state_->participant, state_->topic_executor(), name,
+                                               type, state_->qos_of(name, qos), std::move(consumer),
+                                               std::move(options), &state_->topic_register);
 }
 
 Guid Entity::provide(std::shared_ptr<Servant> servant, const ServiceOptions& options) {

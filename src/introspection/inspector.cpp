@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "entity/asker.hpp"
+#include "skein/detail/entity_access.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
 
@@ -19,7 +20,7 @@ struct Inspector::State {
 };
 
 Inspector::Inspector(Entity& entity, std::function<bool()> gives_up)
-    : state_(new State{{entity.participant(), entity.clock(), std::move(gives_up)}}) {}
+    : state_(new State{{EntityAccess::participant(entity), entity.clock(), std::move(gives_up)}}) {}
 Inspector::~Inspector() = default;
 
 std::vector<Inspected> Inspector::ask_all(inspection::Subject subject, Duration timeout) {

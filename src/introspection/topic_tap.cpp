@@ -7,9 +7,10 @@ namespace skein {
 std::unique_ptr<dds::Reader> tap_topic(dds::Participant& participant, const KnownTopic& topic,
                                        std::vector<std::string> systems, TopicTap tap) {
   const inspection::TopicEndpoint& told = topic.endpoints.front().told;
-  dds::Qos qos = topic.reading_qos();
-  qos.partitions = std::move(systems);
-  if (told.xcdr2) qos.representation = dds::DataRepresentation::Xcdr2;
+  const dds::Qos qos{topic.reading_qos(),
+                     told.xcdr2 ? dds::DataRepresentation::Xcdr2 : dds::DataRepresentation::Xcdr1,
+                     {},
+                     std::move(systems)};
   dds::ReaderListener listener;
   // Of a topic without keys a foreign writer alone sends them, and no instance ends by it.
   if (!told.keyed) tap.on_disposed = nullptr;

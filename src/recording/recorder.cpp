@@ -16,6 +16,7 @@
 #include "recording/recording_time.hpp"
 #include "rpc/service/introspection_topic.hpp"
 #include "skein/describe.hpp"
+#include "skein/detail/entity_access.hpp"
 #include "skein/detail/json.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
@@ -96,7 +97,7 @@ struct Recorder::State {
     if (!options.calls) return;
     record_own(introspection::kCalls);
     call_reader = std::make_unique<introspection::AnyReader>(
-        entity.participant(), introspection::kCallRecords,
+        EntityAccess::participant(entity), introspection::kCallRecords,
         introspection::AnyReader::Listener{
             [this](const dds::Sample& sample) { calls.receive(sample); }});
   }
@@ -109,7 +110,7 @@ struct Recorder::State {
         types.add_channel(topic.name, type, skein::describe(idl::type_support<T>()),
                           {{"type", type}, {"introspection", "true"}});
     own_readers.push_back(std::make_unique<introspection::AnyReader>(
-        entity.participant(), topic,
+        EntityAccess::participant(entity), topic,
         introspection::AnyReader::Listener{[this, channel](const dds::Sample& sample) {
           if (sample.state == dds::InstanceState::Alive) write(channel, sample.cdr);
         }}));
@@ -198,7 +199,7 @@ struct Recorder::State {
           });
     }
     try {
-      known.topic->follow(entity.participant(), topic);
+      known.topic->follow(EntityAccess::participant(entity), topic);
       return "";
     } catch (const Error& error) {
       return std::exchange(known.failure, error.what()) == error.what() ? "" : error.what();

@@ -1,9 +1,8 @@
-#include "skein/decision.hpp"
-
 #include <tuple>
 
 #include "decision_record.hpp"
 #include "skein/error.hpp"
+#include "skein/selection.hpp"
 #include "wire_values.hpp"
 
 namespace skein {

@@ -2,7 +2,7 @@
 
 #include "core/printable.hpp"
 #include "selection_text.hpp"
-#include "skein/decision.hpp"
+#include "skein/selection.hpp"
 #include "wire_values.hpp"
 
 namespace skein {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "skein/selection.hpp"
+#include "skein/detail/history.hpp"
 
 namespace skein::entity {
 

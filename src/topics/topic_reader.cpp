@@ -12,7 +12,7 @@
 #include "skein/detail/cdr.hpp"
 #include "skein/detail/malformed_sample.hpp"
 #include "skein/error.hpp"
-#include "skein/subscription.hpp"
+#include "skein/topics.hpp"
 #include "wire_topic.hpp"
 
 namespace skein::topics {

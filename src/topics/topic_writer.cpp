@@ -12,7 +12,7 @@
 #include "register.hpp"
 #include "skein/detail/cdr.hpp"
 #include "skein/error.hpp"
-#include "skein/publisher.hpp"
+#include "skein/topics.hpp"
 #include "wire_topic.hpp"
 
 namespace skein::topics {

@@ -12,14 +12,12 @@ inline dds::Topic wire_topic(const std::string& name, const TopicType& type) {
 }
 
 inline dds::Qos wire_qos(const TopicQos& qos, const TopicType& type) {
-  dds::Qos result = qos;
-  if (is_xcdr2(type.support->representation)) {
-    result.representation = dds::DataRepresentation::Xcdr2;
-  }
-  result.type = {type.support->description.signature, idl::growing_members(*type.support),
-                 idl::type_text(*type.support)};
-  result.partitions = qos.systems;
-  return result;
+  const TypeSupport& support = *type.support;
+  const bool xcdr2 = is_xcdr2(support.representation);
+  return {qos,
+          xcdr2 ? dds::DataRepresentation::Xcdr2 : dds::DataRepresentation::Xcdr1,
+          {support.description.signature, idl::growing_members(support), idl::type_text(support)},
+          qos.systems};
 }
 
 }  // namespace skein::topics

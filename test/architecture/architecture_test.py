@@ -313,6 +313,14 @@ class Texts(TreeTest):
         self.write("GUIDE.md", "```xml\n<a/>\n```\n\n```sh\nls\n```\n")
         self.assertEqual(text_rules.quoted_code(self.tree), [("README.md", "idl", "module m {};\n"), ("GUIDE.md", "xml", "<a/>\n")])
 
+    def test_main_headers_show_their_class_in_use_with_code_that_is_compiled(self):
+        self.write("include/skein/task.hpp", "/// A task.\nclass Task;\n")
+        self.assertFinds(text_rules.quotes(self.tree), "include/skein/task.hpp: quotes no code")
+        self.write("include/skein/task.hpp", "/// A task.\n///\n/// ```cpp\n/// task.run();\n/// ```\nclass Task;\n")
+        self.assertFinds(text_rules.quotes(self.tree), "include/skein/task.hpp", "task.run();")
+        self.write("test/guide/x.cpp", "void f() {\n  task.run();\n}\n")
+        self.assertFindsNothing(text_rules.quotes(self.tree))
+
 
 class Links(TreeTest):
     def test_a_link_to_what_is_not_there_is_found(self):

@@ -32,12 +32,12 @@ with open(_ARCHITECTURE, encoding="utf-8") as stream:
 USERS_HEADERS = {
     "core": "call call_context clock error executor guid log stream",
     "idl": "describe loaned",
-    "dds/port": "loopback vendor",
-    "topics": "publisher subscription topic_qos",
+    "dds/port": "loopback topic_qos vendor",
+    "topics": "topics",
     "brokerless_discovery": "constraint",
     "connector": "connector gather",
-    "selection": "decision evaluation selection synthesis task",
-    "entity": "component_registry entity head head_options parameters process",
+    "selection": "evaluation selection task",
+    "entity": "component_registry entity head parameters process",
     "introspection": "inspector",
     "dynamic": "dynamic",
     "fusion": "fusion",
@@ -48,11 +48,12 @@ USERS_HEADERS = {
 BESIDE_THE_UMBRELLA = {"Asio", "fusion", "all of the library"}
 # What those, and generated code, need: skein/detail/NAME.hpp.
 DETAIL_HEADERS = {
-    "core": "abi action box bytes call_memory channel loan_memory operation pending_reply representation version",
+    "core": "abi action box bytes call_memory channel loan_memory operation pending_reply pending_stream representation version waiting_services",
     "idl": "argument cdr codec declared_exception filled json json_codec key_hash lendable make_type_support malformed_sample plain_layout"
            " service_reference type_support union_access unknown_operation wide_text",
     "dds/port": "qos",
-    "topics": "topic_type",
+    "topics": "topic_ends topic_type",
+    "entity": "entity_access",
     "selection": "circuit_breaker history task_run",
 }
 _FLOOR_OF_HEADER = {

@@ -33,6 +33,11 @@ SLEEPERS = {
 QUOTING = {
     "README.md": (("cpp", "idl", "python"), ("examples",)),
     "GUIDE.md": (("cpp", "idl", "xml"), ("examples", "test/guide")),
+    # Each shows its main class in use.
+    **{
+        f"include/skein/{name}.hpp": (("cpp",), ("examples", "test/guide"))
+        for name in ("call", "component_registry", "entity", "head", "loaned", "stream", "task", "topics")
+    },
 }
 
 
@@ -81,7 +86,10 @@ def quotes(tree):
         sources = [
             tree.text(source).splitlines() for folder in folders for source in tree.files((*SOURCES, ".idl", ".py", ".xml"), folder)
         ]
-        for language, code in _quoted_by(tree, path):
+        quoted = _quoted_by(tree, path)
+        if path.endswith(".hpp") and tree.exists(path) and not quoted:
+            yield f"{path}: quotes no code"
+        for language, code in quoted:
             lines = _without_margin(code.strip("\n").splitlines())
             if not any(_holds(source, lines) for source in sources):
                 first = lines[0] if lines else "nothing"
@@ -98,7 +106,10 @@ def _quoted_by(tree, path):
     if not tree.exists(path):
         return []
     languages = "|".join(QUOTING[path][0])
-    return re.findall(rf"^```({languages})\n(.*?)^```$", tree.text(path), re.MULTILINE | re.DOTALL)
+    text = tree.text(path)
+    if path.endswith(".hpp"):
+        text = re.sub(r"^ */// ?", "", text, flags=re.MULTILINE)
+    return re.findall(rf"^```({languages})\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
 
 
 def _holds(source, lines):

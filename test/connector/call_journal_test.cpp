@@ -6,6 +6,7 @@
 #include "echo_pair.hpp"
 #include "pairing.hpp"
 #include "skein/detail/codec.hpp"
+#include "skein/detail/entity_access.hpp"
 #include "skein/introspection.idl.hpp"
 #include "test/tools/eventually.hpp"
 #include "test/tools/log.hpp"
@@ -86,7 +87,7 @@ TEST_CASE("while somebody reads, each step of a call is told by both sides under
           "[wire]") {
   EchoPair pair(make_server(), make_client());
   auto& echo = *pair.echo;
-  const Heard heard(pair.client->participant());
+  const Heard heard(EntityAccess::participant(*pair.client));
   REQUIRE(hears(heard, echo));
   std::int32_t remainder;
   CHECK_THROWS_AS(echo.divide(1, 0, remainder), ::test::DivisionByZero);
@@ -117,7 +118,7 @@ TEST_CASE("a call within a process is told by both sides, too") {
   entity->provide<LouderEcho>(std::make_shared<EchoService>(), {.thread = thread});
   auto echo = entity->connect<Echo>();
   const auto onlooker = make_client();
-  const Heard heard(onlooker->participant());
+  const Heard heard(EntityAccess::participant(*onlooker));
   REQUIRE(hears(heard, echo));
   CHECK_THROWS_AS(echo.fail("standard"), Internal);
   CHECK(eventually([&] { return heard.last("fail") == kRefused; }));
@@ -137,14 +138,14 @@ TEST_CASE("a journal is on while it is read") {
   const auto other = make_client();
   ManualClock clock;
   ManualExecutor control;
-  rpc::CallJournal journal(entity->participant(), clock, control, "uav-1/test");
+  rpc::CallJournal journal(EntityAccess::participant(*entity), clock, control, "uav-1/test");
   const OperationInfo& operation = Echo::interface_info().operations[0];
   const auto note = [&] { journal.note(CallStep::Sent, Guid{}, 1, "test/Echo", operation); };
   CHECK_FALSE(journal.on());
   note();
   CHECK(control.run_all() == 0);
   {
-    const Heard heard(other->participant());
+    const Heard heard(EntityAccess::participant(*other));
     REQUIRE(eventually([&] { return journal.on(); }));
     CHECK(eventually([&] {  // best effort
       note();
@@ -160,11 +161,11 @@ TEST_CASE("a journal is on while it is read") {
 TEST_CASE("malformed events are counted, and the first alone is logged") {
   const auto entity = make_server();
   const auto other = make_client();
-  const Heard heard(other->participant());
+  const Heard heard(EntityAccess::participant(*other));
   const Log log;
   dds::Qos qos;
   qos.reliable = false;
-  const auto writer = entity->participant().create_writer(
+  const auto writer = EntityAccess::participant(*entity).create_writer(
       {"skein/calls", "skein::introspection::CallEvents", false}, qos);
   Bytes malformed = idl::encode_message(CallEvents{});
   malformed.resize(malformed.size() / 2);
@@ -174,6 +175,6 @@ TEST_CASE("malformed events are counted, and the first alone is logged") {
     return heard.refused() >= 10;
   }));
   CHECK(log.count("dropped a sample of participant " +
-                  entity->participant().guid().hex().substr(0, 24)) == 1);
+                  EntityAccess::participant(*entity).guid().hex().substr(0, 24)) == 1);
   CHECK(heard.all().empty());
 }

@@ -5,6 +5,7 @@
 #include "echo_pair.hpp"
 #include "pairing.hpp"
 #include "rpc/client/remote_channel.hpp"
+#include "skein/detail/entity_access.hpp"
 #include "test/tools/eventually.hpp"
 #include "test/tools/invariant.hpp"
 #include "test/tools/log.hpp"
@@ -303,7 +304,7 @@ TEST_CASE(
 }
 
 TEST_CASE_METHOD(Pair, "calls beyond a connection's limit are refused as Overloaded and not sent") {
-  calls::DdsCallPort port(client->participant());
+  calls::DdsCallPort port(EntityAccess::participant(*client));
   ThreadExecutor control("control");
   rpc::RemoteChannel::Options options;
   options.peer = "server";

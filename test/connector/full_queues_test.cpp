@@ -6,6 +6,7 @@
 #include "pairing.hpp"
 #include "rpc/client/remote_channel.hpp"
 #include "rpc/server/remote_server.hpp"
+#include "skein/detail/entity_access.hpp"
 #include "test/tools/eventually.hpp"
 
 using namespace skein;
@@ -65,9 +66,9 @@ TEST_CASE("each refusal reaches its caller, however full the server's control qu
   options.queue = 2;
   const auto service = std::make_shared<rpc::Service>(
       std::make_shared<LouderEcho::Skeleton>(echo_service), executor, server->clock(), options);
-  calls::DdsCallPort server_port(server->participant());
+  calls::DdsCallPort server_port(EntityAccess::participant(*server));
   const rpc::RemoteServer remote_server(server_port, control, server->clock(), service, {});
-  calls::DdsCallPort client_port(client->participant());
+  calls::DdsCallPort client_port(EntityAccess::participant(*client));
   ThreadExecutor client_control("control");
   rpc::RemoteChannel::Options channel_options;
   channel_options.peer = "server";

@@ -5,6 +5,7 @@
 #include "entity/statistics_topic.hpp"
 #include "pairing.hpp"
 #include "skein/detail/codec.hpp"
+#include "skein/detail/entity_access.hpp"
 #include "skein/introspection.idl.hpp"
 #include "test/tools/eventually.hpp"
 
@@ -32,7 +33,7 @@ OperationStatistics of(const std::vector<ServiceStatistics>& services,
 class Teller {
  public:
   explicit Teller(Entity& entity)
-      : writer_(entity.participant().create_writer(
+      : writer_(EntityAccess::participant(entity).create_writer(
             {"skein/statistics", "skein::introspection::ServiceStatistics", true}, qos())) {}
 
   void tell(const Guid& provider, const std::string& service) {
@@ -112,7 +113,7 @@ TEST_CASE(
     "statistics of all entities reach whoever reads their topic, and tell of later calls too") {
   EchoPair pair(make_server(), make_client());
   pair.echo->echo("x");
-  const introspection::StatisticsReader reader(pair.client->participant());
+  const introspection::StatisticsReader reader(EntityAccess::participant(*pair.client));
   CHECK(eventually([&] { return of(reader.latest(), "echo").answered == 1; }));
   pair.echo->echo("x");
   CHECK(eventually([&] { return of(reader.latest(), "echo").answered == 2; }));
@@ -122,7 +123,7 @@ TEST_CASE(
 TEST_CASE("a reader takes from each peer the statistics of that peer's own services alone",
           "[wire]") {
   const auto onlooker = make_client();
-  const introspection::StatisticsReader reader(onlooker->participant());
+  const introspection::StatisticsReader reader(EntityAccess::participant(*onlooker));
   const auto peer = make_server("peer");
   const auto rogue = make_server("rogue");
   const Guid service = peer->broker().new_provider();

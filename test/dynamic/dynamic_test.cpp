@@ -5,6 +5,7 @@
 
 #include "entity/inspection_topic.hpp"
 #include "skein/describe.hpp"
+#include "skein/detail/entity_access.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
 #include "skein/inspector.hpp"
@@ -167,12 +168,13 @@ TEST_CASE_METHOD(Survey,
 
 TEST_CASE_METHOD(Survey, "an answer by another one than who was asked does not count") {
   auto stranger = make_client("stranger");
-  const auto answers = stranger->participant().create_writer(introspection::kAnswers.dds_topic(),
-                                                             introspection::kAnswers.qos());
+  const auto answers = EntityAccess::participant(*stranger).create_writer(
+      introspection::kAnswers.dds_topic(), introspection::kAnswers.qos());
   std::atomic<int> answered = 0;
   ThreadExecutor executor("stranger");
   const introspection::Reader<inspection::Question> questions(
-      stranger->participant(), introspection::kQuestions, [&](const inspection::Question& asked) {
+      EntityAccess::participant(*stranger), introspection::kQuestions,
+      [&](const inspection::Question& asked) {
         inspection::Answer answer;
         answer.asker = asked.asker;
         answer.number = asked.number;
@@ -191,8 +193,8 @@ TEST_CASE_METHOD(Survey, "an answer by another one than who was asked does not c
 
 TEST_CASE_METHOD(Survey, "topics that no vendor could read are not known, whoever tells of them") {
   auto stranger = make_client("stranger");
-  const auto answers = stranger->participant().create_writer(introspection::kAnswers.dds_topic(),
-                                                             introspection::kAnswers.qos());
+  const auto answers = EntityAccess::participant(*stranger).create_writer(
+      introspection::kAnswers.dds_topic(), introspection::kAnswers.qos());
   const std::string too_long(256, 'a');
   const auto topic = [](const std::string& name, const std::string& type,
                         const std::string& system) {
@@ -205,7 +207,8 @@ TEST_CASE_METHOD(Survey, "topics that no vendor could read are not known, whoeve
   };
   ThreadExecutor executor("stranger");
   const introspection::Reader<inspection::Question> questions(
-      stranger->participant(), introspection::kQuestions, [&](const inspection::Question& asked) {
+      EntityAccess::participant(*stranger), introspection::kQuestions,
+      [&](const inspection::Question& asked) {
         inspection::Answer answer;
         answer.asker = asked.asker;
         answer.number = asked.number;

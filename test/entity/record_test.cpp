@@ -12,6 +12,7 @@
 #include "entity/decision_log.hpp"
 #include "office.hpp"
 #include "rpc/service/introspection_topic.hpp"
+#include "skein/detail/entity_access.hpp"
 #include "skein/detail/type_support.hpp"
 #include "skein/introspection.idl.hpp"
 #include "test/tools/log.hpp"
@@ -268,8 +269,8 @@ TEST_CASE("who reads the topic of decisions gets each as it is made", "[wire]") 
   const auto onlooker = make_client();
   std::mutex mutex;
   std::vector<Decision> seen;
-  introspection::Reader<Decision> reader(onlooker->participant(), introspection::kDecisions,
-                                         [&](const Decision& decision) {
+  introspection::Reader<Decision> reader(EntityAccess::participant(*onlooker),
+                                         introspection::kDecisions, [&](const Decision& decision) {
                                            const std::lock_guard lock(mutex);
                                            seen.push_back(decision);
                                          });

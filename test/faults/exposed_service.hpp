@@ -9,6 +9,7 @@
 #include "brokerless_discovery/broker.hpp"
 #include "call_port/dds_call_port.hpp"
 #include "rpc/server/remote_server.hpp"
+#include "skein/detail/entity_access.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
 #include "test/connector/echo_service.hpp"
@@ -32,7 +33,7 @@ class ExposedService {
         service_(std::make_shared<rpc::Service>(
             std::make_shared<typename Implementation::Skeleton>(std::move(implementation)),
             executor_, entity.clock(), service_options(entity.broker().new_provider(), queue))),
-        port_(entity.participant()),
+        port_(EntityAccess::participant(entity)),
         server_(port_, control_, entity.clock(), service_, {}),
         registration_(entity.broker().add_service(
             describe(service_->interface_info(), id(), entity.options().name))) {}

@@ -7,6 +7,7 @@
 #include "site.hpp"
 #include "skein/call_context.hpp"
 #include "skein/error.hpp"
+#include "skein/loaned.hpp"
 
 using namespace std::chrono_literals;
 
@@ -40,6 +41,18 @@ class ThoroughSurveyor : public Surveyor {
     }
     return minutes;
   }
+};
+
+class Archive : public survey::IArchive {
+ public:
+  std::uint32_t store(const survey::Image& image) override {
+    last_pixel = image.pixels.back();
+    return ++stored_;
+  }
+  std::uint8_t last_pixel = 0;
+
+ private:
+  std::uint32_t stored_ = 0;
 };
 
 /// A coroutine that nobody waits for.
@@ -111,6 +124,21 @@ TEST_CASE("a stream is read one result after the other, and dropped when enough 
   auto photos = surveyor.within(1min).fly(kField);
   while (const auto photo = photos.next()) show(*photo);
   CHECK(seen == 40);
+}
+
+TEST_CASE("a large parameter can be lent") {
+  Site site;
+  skein::Entity& station = site.station;
+  const auto shelf = std::make_shared<Archive>();
+  site.drone.provide<survey::IArchive>(shelf);
+
+  auto archive = station.connect<survey::IArchive>();
+  skein::Loaned<survey::Image> image;  // once, for many calls
+  image->pixels.fill(128);
+  const std::uint32_t number = archive.store(*image);
+
+  CHECK(number == 1);
+  CHECK(shelf->last_pixel == 128);
 }
 
 TEST_CASE("calls can be under way at once") {

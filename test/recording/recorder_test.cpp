@@ -13,6 +13,7 @@
 #include "recording/recorded_types.hpp"
 #include "skein/describe.hpp"
 #include "skein/detail/codec.hpp"
+#include "skein/detail/entity_access.hpp"
 #include "skein/dynamic.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
@@ -109,7 +110,9 @@ class Mute {
 };
 
 /// As the publisher of a survey's type in the system uav-1 has it.
-dds::Qos as_published(dds::Qos qos) {
+dds::Qos as_published(const QosPolicies& policies) {
+  dds::Qos qos;
+  static_cast<QosPolicies&>(qos) = policies;
   if (is_xcdr2(idl::type_support<survey::Marker>().representation))
     qos.representation = dds::DataRepresentation::Xcdr2;
   qos.partitions = {"uav-1"};
@@ -270,8 +273,8 @@ TEST_CASE("a disposal that came without its key is recorded without one") {
   recorded.begin();
   REQUIRE(eventually([&] { return recorded.recorder->look(1s), markers.subscribers() == 1; }));
   const auto stranger = make_entity("stranger");
-  const auto writer = stranger->participant().create_writer({"marker", "survey::Marker", true},
-                                                            as_published(TopicQos::state()));
+  const auto writer = EntityAccess::participant(*stranger).create_writer(
+      {"marker", "survey::Marker", true}, as_published(TopicQos::state()));
   REQUIRE(eventually([&] { return !writer->matched_readers().empty(); }));
   writer->dispose({});
   REQUIRE(eventually([&] { return recorded.written("skein/disposals") == 1; }));

@@ -4,7 +4,7 @@
 #include <functional>
 #include <random>
 
-#include "skein/selection.hpp"
+#include "skein/detail/history.hpp"
 
 using namespace skein;
 

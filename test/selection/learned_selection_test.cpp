@@ -48,7 +48,7 @@ std::vector<Duration> operator+(std::vector<Duration> left, const std::vector<Du
 }
 
 Selection select(const std::vector<Candidate>& candidates, Duration remaining, Utility utility = {},
-                 double exploration = 0, History::Decisions past = {}) {
+                 double exploration = 0, PastDecisions past = {}) {
   return make_learned_selection()->select(candidates,
                                           {{}, remaining, exploration, past, utility, {}});
 }

@@ -1,5 +1,3 @@
-#include "skein/synthesis.hpp"
-
 #include <catch2/catch.hpp>
 #include <cmath>
 

@@ -10,8 +10,7 @@
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
 #include "skein/loopback.hpp"
-#include "skein/publisher.hpp"
-#include "skein/subscription.hpp"
+#include "skein/topics.hpp"
 #include "streams.idl.hpp"
 #include "test/tools/eventually.hpp"
 #include "test/tools/log.hpp"
@@ -26,14 +25,39 @@ using streams::Rudder;
 
 namespace {
 
+template <class T>
+Publisher<T> publish(dds::Participant& participant, const std::string& topic,
+                     const TopicQos& qos = {}) {
+  return Publisher<T>(std::make_unique<topics::TopicWriter>(participant, topic,
+                                                            topics::topic_type<T>(), qos, nullptr));
+}
+
+template <class T>
+auto reader(dds::Participant& participant, Executor& executor, const std::string& topic,
+            const TopicQos& qos, std::function<void(const T&)> callback,
+            SubscriptionOptions options = {}) {
+  return std::make_unique<topics::TopicReader>(
+      participant, executor, topic, topics::topic_type<T>(), qos,
+      topics::consumer_of(std::move(callback)), std::move(options), nullptr);
+}
+
+template <class T>
+Subscription<T> subscribe(dds::Participant& participant, Executor& executor,
+                          const std::string& topic, const TopicQos& qos,
+                          std::function<void(const T&)> callback,
+                          SubscriptionOptions options = {}) {
+  return Subscription<T>(
+      reader<T>(participant, executor, topic, qos, std::move(callback), std::move(options)));
+}
+
 /// Two participants on a network whose time stands still, and callbacks that run when the test says
 /// so.
 struct Sea {
-  Publisher<Rudder> helm(const TopicQos& qos = {}) { return {*ship, "rudder", qos}; }
+  Publisher<Rudder> helm(const TopicQos& qos = {}) { return publish<Rudder>(*ship, "rudder", qos); }
 
   Subscription<Rudder> watch_rudder(const TopicQos& qos = {}, SubscriptionOptions options = {}) {
     const auto note = [this](const Rudder& value) { angles.push_back(value.angle_deg); };
-    return {*shore, executor, "rudder", qos, note, std::move(options)};
+    return subscribe<Rudder>(*shore, executor, "rudder", qos, note, std::move(options));
   }
 
   ManualClock clock;
@@ -81,7 +105,7 @@ TEST_CASE_METHOD(Sea, "a long row of values is handed over whole, in several tur
 
 TEST_CASE_METHOD(Sea, "without a callback values wait until they are taken") {
   auto rudder = helm();
-  Subscription<Rudder> watch(*shore, executor, "rudder", {}, nullptr);
+  auto watch = subscribe<Rudder>(*shore, executor, "rudder", {}, nullptr);
   CHECK_FALSE(watch.take());
   for (const double angle : {1.0, 2.0, 3.0}) rudder.publish({"helm", angle});
   CHECK(watch.take().value().angle_deg == 1);
@@ -106,9 +130,9 @@ TEST_CASE_METHOD(Sea,
                  "of values that are too large to be sent best effort the publisher tells once") {
   const Log log;
   const std::string large((1 << 20) + 1, 'x');
-  Publisher<Depth> reliable(*ship, "depth", {});
+  auto reliable = publish<Depth>(*ship, "depth");
   reliable.publish({1, 1, large});
-  Publisher<Depth> sensor(*ship, "depth", TopicQos::sensor());
+  auto sensor = publish<Depth>(*ship, "depth", TopicQos::sensor());
   sensor.publish({1, 1, "small"});
   CHECK(log.text().empty());
   for (int i = 0; i < 3; ++i) sensor.publish({1, 1, large});
@@ -125,8 +149,8 @@ TEST_CASE_METHOD(Sea,
   const auto slow = watch_rudder(qos);
   ManualExecutor prompt_executor;
   int prompt_values = 0;
-  const Subscription<Rudder> prompt(*shore, prompt_executor, "rudder", qos,
-                                    [&](const Rudder&) { ++prompt_values; });
+  const auto prompt = subscribe<Rudder>(*shore, prompt_executor, "rudder", qos,
+                                        [&](const Rudder&) { ++prompt_values; });
   for (int i = 0; i < 100; ++i) {
     rudder.publish({"helm", static_cast<double>(i)});
     prompt_executor.run_all();
@@ -178,9 +202,9 @@ TEST_CASE_METHOD(
 TEST_CASE_METHOD(
     Sea, "of two commands the stronger is heard, and the weaker again once the stronger is late") {
   const auto watch = watch_rudder(TopicQos::command(0, 50ms));
-  Publisher<Rudder> autopilot(*ship, "rudder", TopicQos::command(1, 50ms));
+  auto autopilot = publish<Rudder>(*ship, "rudder", TopicQos::command(1, 50ms));
   auto other_ship = network.vendor()->create_participant({});
-  Publisher<Rudder> skipper(*other_ship, "rudder", TopicQos::command(2, 50ms));
+  auto skipper = publish<Rudder>(*other_ship, "rudder", TopicQos::command(2, 50ms));
   autopilot.publish({"autopilot", 1});
   skipper.publish({"skipper", 2});
   autopilot.publish({"autopilot", 3});
@@ -199,11 +223,11 @@ TEST_CASE_METHOD(
 TEST_CASE_METHOD(Sea, "a missed deadline is told on the executor, with the key") {
   TopicQos qos;
   qos.deadline = 100ms;
-  Publisher<Depth> depths(*ship, "depth", qos);
+  auto depths = publish<Depth>(*ship, "depth", qos);
   std::vector<Guid> missed;
   SubscriptionOptions options;
   options.on_deadline_missed = [&](const Guid& key) { missed.push_back(key); };
-  const Subscription<Depth> watch(
+  const auto watch = subscribe<Depth>(
       *shore, executor, "depth", qos, [](const Depth&) {}, options);
   depths.publish({7, 12.5, ""});
   executor.run_all();
@@ -216,7 +240,7 @@ TEST_CASE_METHOD(Sea, "a missed deadline is told on the executor, with the key")
 
 TEST_CASE_METHOD(Sea,
                  "who comes late is given the last state of each key, but not what was disposed") {
-  Publisher<Depth> depths(*ship, "depth", TopicQos::state());
+  auto depths = publish<Depth>(*ship, "depth", TopicQos::state());
   for (const std::int32_t sensor : {1, 2, 3}) {
     depths.publish({sensor, 1, "old"});
     depths.publish({sensor, 2, "new"});
@@ -226,7 +250,7 @@ TEST_CASE_METHOD(Sea,
   std::vector<Guid> disposed;
   SubscriptionOptions options;
   options.on_disposed = [&](const Guid& key) { disposed.push_back(key); };
-  const Subscription<Depth> late(
+  const auto late = subscribe<Depth>(
       *shore, executor, "depth", TopicQos::state(),
       [&](const Depth& value) { values.push_back(value); }, options);
   executor.run_all();
@@ -261,7 +285,7 @@ TEST_CASE_METHOD(
   auto rudder = helm();
   const bool standard = GENERATE(true, false);
   int calls = 0;
-  const Subscription<Rudder> watch(*shore, executor, "rudder", {}, [&](const Rudder&) {
+  const auto watch = subscribe<Rudder>(*shore, executor, "rudder", {}, [&](const Rudder&) {
     ++calls;
     if (standard) throw std::runtime_error("aground");
     throw 42;
@@ -283,7 +307,7 @@ TEST_CASE_METHOD(
   TopicQos qos;
   qos.deadline = 100ms;
   ThreadExecutor executor("topics");
-  Publisher<Depth> depths(*ship, "depth", qos);
+  auto depths = publish<Depth>(*ship, "depth", qos);
   std::atomic<int> told = 0;
   SubscriptionOptions options;
   options.executor = &executor;
@@ -292,7 +316,7 @@ TEST_CASE_METHOD(
     throw 42;
   };
   options.on_disposed = options.on_deadline_missed;
-  const Subscription<Depth> watch(
+  const auto watch = subscribe<Depth>(
       *shore, this->executor, "depth", qos, [](const Depth&) { throw 42; }, options);
   depths.publish({7, 12.5, ""});
   clock.advance(100ms);
@@ -321,7 +345,7 @@ TEST_CASE_METHOD(Sea,
   ThreadExecutor executor("topics");
   std::atomic<bool> inside = false;
   std::atomic<bool> may_return = false;
-  const Subscription<Rudder> watch(*shore, executor, "rudder", {}, [&](const Rudder&) {
+  const auto watch = subscribe<Rudder>(*shore, executor, "rudder", {}, [&](const Rudder&) {
     inside = true;
     eventually([&] { return may_return.load(); });
   });
@@ -347,10 +371,10 @@ TEST_CASE_METHOD(
   std::atomic<bool> inside = false;
   std::atomic<bool> may_return = false;
   auto watch = std::make_unique<Subscription<Rudder>>(
-      *shore, executor, "rudder", TopicQos{}, [&](const Rudder&) {
+      reader<Rudder>(*shore, executor, "rudder", TopicQos{}, [&](const Rudder&) {
         inside = true;
         eventually([&] { return may_return.load(); });
-      });
+      }));
   rudder.publish({"helm", 1});
   REQUIRE(eventually([&] { return inside.load(); }));
   std::thread ends([&] { watch.reset(); });
@@ -369,10 +393,10 @@ TEST_CASE_METHOD(
   auto rudder = helm();
   int calls = 0;
   std::optional<Subscription<Rudder>> watch;
-  watch.emplace(*shore, executor, "rudder", TopicQos{}, [&](const Rudder&) {
+  watch.emplace(reader<Rudder>(*shore, executor, "rudder", TopicQos{}, [&](const Rudder&) {
     ++calls;
     watch.reset();
-  });
+  }));
   for (const double angle : {1.0, 2.0, 3.0}) rudder.publish({"helm", angle});
   executor.run_all();
   CHECK(calls == 1);

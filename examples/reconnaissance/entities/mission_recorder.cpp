@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "convert.hpp"
-#include "skein/decision.hpp"
+#include "skein/selection.hpp"
 #include "stream.hpp"
 #include "topics.hpp"
 

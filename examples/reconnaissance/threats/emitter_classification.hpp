@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "skein/synthesis.hpp"
+#include "skein/evaluation.hpp"
 #include "threats/warner_receiver.hpp"
 
 // Three ways to tell from measured waveforms which radar transmits, and in which mode. Each is a

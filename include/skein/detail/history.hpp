@@ -10,47 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "skein/clock.hpp"
+#include "skein/selection.hpp"
 
 namespace skein {
-
-/// A property of a request that may matter for the choice, as a number: `{"cells", 65536}`.
-struct Feature {
-  std::string name;
-  double value = 0;
-  bool operator==(const Feature&) const = default;
-};
-using Features = std::vector<Feature>;
-
-/// A run of at least this weight is on a similar request; others are all that there is.
-inline constexpr double kSimilar = 0.1;
-
-/// A past run.
-struct SimilarRun {
-  std::uint64_t request = 0;  ///< The request's number: equal for CSPs that ran on the same one.
-  /// 0 to 1: how similar; less if it ran only since others had failed, which most requests do not
-  /// come to; 0 if the request is only there since another CSP ran on it, too.
-  double weight = 0;
-  Duration took{};
-  bool accepted = false;
-  bool late = false;  ///< Given up: an answer would have taken longer than `took`.
-  std::optional<double> quality;
-  bool operator==(const SimilarRun&) const = default;
-};
-
-/// What a CSP's own history predicts for a request.
-struct Prediction {
-  std::vector<SimilarRun> runs;  ///< The most similar first; 1 to 16 with a weight.
-  std::size_t similar = 0;       ///< How many of these have a weight of at least kSimilar.
-  /// Time to an accepted result, by weight; unset if none of these runs was accepted or late. A
-  /// late run counts with twice its time.
-  std::optional<Duration> median;
-  std::optional<Duration> p95;
-  std::optional<double> quality;  ///< Mean of the measured values, by weight.
-  double reliability = 1;         ///< Share of accepted results, with one success added.
-  std::uint64_t idle = 0;         ///< Requests since it last ran.
-  bool operator==(const Prediction&) const = default;
-};
 
 /// Orders by interface and CSP; allows look-up by views of them.
 struct ByCsp {
@@ -85,11 +47,7 @@ class History {
     std::uint32_t after = 0;        ///< How many CSPs had failed at this request before.
     bool operator==(const Sample& other) const;
   };
-  struct Decisions {
-    std::uint64_t made = 0;
-    std::uint64_t explored = 0;
-    bool operator==(const Decisions&) const = default;
-  };
+  using Decisions = PastDecisions;
 
   static constexpr std::size_t kKept = 1000;
   static constexpr std::size_t kNeighbours = 16;

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "skein/decision.hpp"
 #include "skein/error.hpp"
+#include "skein/selection.hpp"
 #include "skein/task.hpp"
 
 /// A running task as the Head sees it, without its types. Used by Head::perform().

@@ -17,8 +17,8 @@
 #include "recording/mcap/reader.hpp"
 #include "rpc/service/introspection_topic.hpp"
 #include "skein/component_registry.hpp"
-#include "skein/decision.hpp"
 #include "skein/detail/codec.hpp"
+#include "skein/detail/entity_access.hpp"
 #include "skein/detail/type_support.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
@@ -49,7 +49,7 @@ void watch(const DecisionsArguments& arguments) {
   const Interruption interruption;
   Entity entity = join(arguments, "decisions");
   introspection::Reader<introspection::Decision> reader(
-      entity.participant(), introspection::kDecisions,
+      EntityAccess::participant(entity), introspection::kDecisions,
       [&arguments](const introspection::Decision& record) {
         if (!is_wanted(record, arguments)) return;
         arguments.json ? print_decision_json(record) : print_decision(record);

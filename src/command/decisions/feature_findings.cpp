@@ -8,7 +8,7 @@
 #include <span>
 
 #include "core/printable.hpp"
-#include "skein/decision.hpp"
+#include "skein/selection.hpp"
 
 namespace skein::command {
 namespace {

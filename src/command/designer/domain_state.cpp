@@ -8,8 +8,8 @@
 #include "command/print/figures.hpp"
 #include "core/log.hpp"
 #include "core/printable.hpp"
-#include "skein/decision.hpp"
 #include "skein/discovery.idl.hpp"
+#include "skein/selection.hpp"
 
 namespace skein::command::designer {
 namespace {

@@ -9,6 +9,7 @@
 #include "core/threads/start_thread.hpp"
 #include "core/wall_clock.hpp"
 #include "mission/supervise/mission_claim.hpp"
+#include "skein/detail/entity_access.hpp"
 #include "skein/detail/type_support.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
@@ -176,10 +177,10 @@ DomainWatch::DomainWatch(Entity& entity, std::uint32_t domain, std::optional<Pla
       maker_(std::move(plan)),
       look_(entity, std::move(gives_up)),
       launchers_(domain),
-      statistics_(entity.participant()),
-      decisions_(entity.participant(), introspection::kDecisions,
+      statistics_(EntityAccess::participant(entity)),
+      decisions_(EntityAccess::participant(entity), introspection::kDecisions,
                  [this](const introspection::Decision& each) { history_.add(each); }),
-      log_(entity.participant(), introspection::kLog,
+      log_(EntityAccess::participant(entity), introspection::kLog,
            [this](const introspection::LogLine& each) { history_.add(each); }) {}
 
 DomainState DomainWatch::look() {

@@ -13,6 +13,7 @@
 #include "core/printable.hpp"
 #include "rpc/service/introspection_topic.hpp"
 #include "service_names.hpp"
+#include "skein/detail/entity_access.hpp"
 #include "skein/entity.hpp"
 #include "skein/introspection.idl.hpp"
 
@@ -84,7 +85,7 @@ int show_calls(const CallsArguments& arguments) {
   Entity entity = join(arguments, "calls");
   Narration narration(arguments.entity, arguments.json);
   introspection::Reader<introspection::CallEvents> reader(
-      entity.participant(), introspection::kCalls,
+      EntityAccess::participant(entity), introspection::kCalls,
       [&](const introspection::CallEvents& batch) { narration.tell(batch); });
   tell_waiting(arguments, "the next call");
   interruption.wait(arguments.seconds);

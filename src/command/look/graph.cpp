@@ -15,6 +15,7 @@
 #include "core/printable.hpp"
 #include "core/system/whole_file.hpp"
 #include "entity/statistics_topic.hpp"
+#include "skein/detail/entity_access.hpp"
 #include "skein/discovery.idl.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
@@ -256,7 +257,7 @@ int draw_graph(const GraphArguments& arguments) {
   const Interruption interruption;
   const std::string format = arguments.json ? "json" : arguments.format;
   Entity entity = join(arguments, "graph");
-  const introspection::StatisticsReader statistics(entity.participant());
+  const introspection::StatisticsReader statistics(EntityAccess::participant(entity));
   DomainLook look(entity, interruption.gives_up());
   if (arguments.seconds > 0) interruption.wait(arguments.seconds);
   Traffic traffic;

@@ -19,6 +19,7 @@
 #include "core/suggestion.hpp"
 #include "rpc/service/introspection_topic.hpp"
 #include "service_names.hpp"
+#include "skein/detail/entity_access.hpp"
 #include "skein/entity.hpp"
 #include "skein/introspection.idl.hpp"
 
@@ -109,7 +110,7 @@ int show_log(const LogArguments& arguments) {
   Entity entity = join(arguments, "log");
   LogPrinter printer(arguments);
   introspection::Reader<introspection::LogLine> reader(
-      entity.participant(), introspection::kLog,
+      EntityAccess::participant(entity), introspection::kLog,
       [&](const introspection::LogLine& line) { printer.show(line); });
   tell_waiting(arguments, "the next line of a log");
   const bool for_ever = arguments.seconds == 0;

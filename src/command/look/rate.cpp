@@ -10,6 +10,7 @@
 #include "command/commands.hpp"
 #include "command/print/wrapped.hpp"
 #include "introspection/topic_tap.hpp"
+#include "skein/detail/entity_access.hpp"
 #include "skein/entity.hpp"
 #include "topic_survey.hpp"
 
@@ -103,7 +104,7 @@ int show_rate(const TopicArguments& arguments) {
   const KnownTopic topic = await_topic(inspector, arguments.topic, arguments.wait, interruption);
   Arrivals arrivals;
   const auto reader =
-      tap_topic(entity.participant(), topic, topic.systems(),
+      tap_topic(EntityAccess::participant(entity), topic, topic.systems(),
                 {[&](const dds::Sample& value) { arrivals.add(value.cdr.size()); }});
   double watched = 0;
   std::uint64_t lines = 0;

@@ -9,6 +9,7 @@
 #include "command/print/json_output.hpp"
 #include "core/printable.hpp"
 #include "entity/statistics_topic.hpp"
+#include "skein/detail/entity_access.hpp"
 #include "skein/discovery.idl.hpp"
 #include "skein/entity.hpp"
 #include "skein/inspector.hpp"
@@ -142,7 +143,7 @@ int list_services(const ServicesArguments& arguments) {
   std::optional<introspection::StatisticsReader> statistics;
   std::optional<Inspector> inspector;
   if (arguments.statistics) {
-    statistics.emplace(entity.participant());
+    statistics.emplace(EntityAccess::participant(entity));
     inspector.emplace(entity, interruption.gives_up());
   }
   if (arguments.seconds > 0) interruption.wait(arguments.seconds);

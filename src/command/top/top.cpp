@@ -18,6 +18,7 @@
 #include "frame.hpp"
 #include "rpc/service/introspection_topic.hpp"
 #include "sampler.hpp"
+#include "skein/detail/entity_access.hpp"
 #include "skein/entity.hpp"
 #include "skein/introspection.idl.hpp"
 #include "terminal.hpp"
@@ -34,8 +35,8 @@ class Watch {
       : entity_(entity),
         tools_(tools),
         look_(entity, interruption.gives_up()),
-        statistics_(entity.participant()),
-        decisions_(entity.participant(), introspection::kDecisions,
+        statistics_(EntityAccess::participant(entity)),
+        decisions_(EntityAccess::participant(entity), introspection::kDecisions,
                    [this](const introspection::Decision& decision) { add(decision); }) {}
 
   /// Waits for peers that do not answer, a second.

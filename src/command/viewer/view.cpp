@@ -6,6 +6,7 @@
 #include "command/commands.hpp"
 #include "command/print/interruption.hpp"
 #include "service_feed.hpp"
+#include "skein/detail/entity_access.hpp"
 #include "skein/discovery.idl.hpp"
 #include "skein/entity.hpp"
 #include "skein/inspector.hpp"
@@ -43,7 +44,7 @@ int serve_view(const ViewArguments& arguments) {
   Inspector inspector(entity, interruption.gives_up());
   view::Server server(server_options(arguments));
   ServiceFeed services(server, entity, inspector);
-  TopicFeed topics(server, entity.participant(), inspector);
+  TopicFeed topics(server, EntityAccess::participant(entity), inspector);
   topics.show(introspection::kCalls);
   topics.show(introspection::kDecisions);
   topics.show(introspection::kStatistics);

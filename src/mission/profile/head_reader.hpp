@@ -1,7 +1,7 @@
 #pragma once
 
 #include "mission/xml/xml_element.hpp"
-#include "skein/head_options.hpp"
+#include "skein/entity.hpp"
 
 namespace skein::profile {
 

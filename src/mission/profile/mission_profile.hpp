@@ -15,7 +15,7 @@
 #include "mission/profile/restart_rules.hpp"
 #include "mission/profile/thread_rules.hpp"
 #include "mission/profile/topic_rules.hpp"
-#include "skein/head_options.hpp"
+#include "skein/entity.hpp"
 
 namespace skein::profile {
 

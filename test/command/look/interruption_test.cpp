@@ -91,19 +91,27 @@ class Silence {
   int ends_[2];
 };
 
-/// Starts one after the other, interrupts it after a while, and measures how long it goes on.
-void interrupt_each(const std::vector<Words>& commands, std::chrono::milliseconds after) {
+/// How long it goes on once it is interrupted.
+std::chrono::milliseconds interrupt(const Words& words, std::chrono::milliseconds after) {
   const Silence silence;
+  CommandRun run(words, {.prepare = [&] { ::dup2(silence.reader(), STDIN_FILENO); }});
+  eventually([&] { return run.wait(0s) >= 0; }, after);  // it may have ended by itself
+  const auto begin = Clock::now();
+  run.signal(SIGINT);
+  const int code = run.wait(10s);
+  const auto took = std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - begin);
+  INFO(text_of(words) << "after " << after.count() << " ms:\n" << run.output());
+  CHECK(code >= 0);
+  return took;
+}
+
+/// One after the other; on a busy machine one that goes on for long has two more tries.
+void interrupt_each(const std::vector<Words>& commands, std::chrono::milliseconds after) {
   for (const Words& words : commands) {
-    CommandRun run(words, {.prepare = [&] { ::dup2(silence.reader(), STDIN_FILENO); }});
-    eventually([&] { return run.wait(0s) >= 0; }, after);  // it may have ended by itself
-    const auto begin = Clock::now();
-    run.signal(SIGINT);
-    const int code = run.wait(10s);
-    const auto took = Clock::now() - begin;
-    INFO(text_of(words) << "after " << after.count() << " ms:\n" << run.output());
-    CHECK(code >= 0);
-    CHECK(std::chrono::duration_cast<std::chrono::milliseconds>(took) < 1000ms);
+    auto took = interrupt(words, after);
+    for (int tries = 1; tries < 3 && took >= 1s; ++tries) took = interrupt(words, after);
+    INFO(text_of(words) << "after " << after.count() << " ms");
+    CHECK(took < 1000ms);
   }
 }
 

@@ -9,11 +9,11 @@
 #include <regex>
 
 #include "errand.hpp"
-#include "skein/decision.hpp"
 #include "skein/detail/type_support.hpp"
 #include "skein/entity.hpp"
 #include "skein/head.hpp"
 #include "skein/introspection.idl.hpp"
+#include "skein/selection.hpp"
 #include "test/tools/command_run.hpp"
 #include "test/tools/installed.hpp"
 #include "test/tools/network_space.hpp"

@@ -6,6 +6,7 @@
 
 #include "call_port/dds_call_port.hpp"
 #include "rpc/client/remote_channel.hpp"
+#include "skein/detail/entity_access.hpp"
 #include "skein/detail/type_support.hpp"
 #include "test/faults/exposed_service.hpp"
 #include "test/faults/messages.hpp"
@@ -68,7 +69,7 @@ class Attacked {
 
 std::unique_ptr<dds::Writer> matched_writer(Entity& entity, const dds::Topic& topic,
                                             const dds::Qos& qos) {
-  auto writer = entity.participant().create_writer(topic, qos);
+  auto writer = EntityAccess::participant(entity).create_writer(topic, qos);
   REQUIRE(eventually([&] { return !writer->matched_readers().empty(); }));
   return writer;
 }
@@ -177,8 +178,8 @@ class RogueServer {
         worker_.post([this, head] { answer(head); });
       });
     };
-    reader_ = entity.participant().create_reader(calls::request_topic(address()), qos,
-                                                 std::move(listener));
+    reader_ = EntityAccess::participant(entity).create_reader(calls::request_topic(address()), qos,
+                                                              std::move(listener));
     registration_ = entity.broker().add_service(describe_echo(id_, "rogue"));
   }
   ~RogueServer() {
@@ -201,7 +202,8 @@ class RogueServer {
     if (!writer_) {
       dds::Qos qos;
       qos.partitions = {head.id.client.hex()};
-      writer_ = entity_.participant().create_writer(calls::reply_topic(address()), qos);
+      writer_ =
+          EntityAccess::participant(entity_).create_writer(calls::reply_topic(address()), qos);
     }
     Bytes message;
     if (head.operation == rpc::wire::kOpen) {

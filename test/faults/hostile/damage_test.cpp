@@ -2,6 +2,7 @@
 #include <future>
 #include <mutex>
 
+#include "skein/detail/entity_access.hpp"
 #include "test/faults/exposed_service.hpp"
 #include "test/faults/messages.hpp"
 #include "test/faults/processes.hpp"
@@ -128,7 +129,7 @@ TEST_CASE("a request that was damaged on its way is answered at once, with cause
   const auto server = entity_with_lease("server", Pairing::get().server, 1000ms);
   const auto client = entity_with_lease("client", Pairing::get().client, 1000ms);
   ExposedService service(*server, std::make_shared<EchoService>());
-  HandClient hand(client->participant(), service.address());
+  HandClient hand(EntityAccess::participant(*client), service.address());
   hand.open();
 
   Bytes good = echo_request(hand.guid());
@@ -152,7 +153,7 @@ TEST_CASE("who waited for `open` in vain hears of answers that could not be read
   const auto server = entity_with_lease("server", Pairing::get().server, 1000ms);
   const auto client = entity_with_lease("client", Pairing::get().client, 1000ms);
   const calls::Address address{"test/LouderEcho", server->broker().new_provider()};
-  const Opener opener(server->participant(), address, [](const wire::RequestId& id) {
+  const Opener opener(EntityAccess::participant(*server), address, [](const wire::RequestId& id) {
     return first(answer_to_open(id, wire::RemoteException::Ok), 20);
   });
   const auto registration = server->broker().add_service(describe_echo(address.provider, "server"));
@@ -165,7 +166,7 @@ TEST_CASE("a foreign server that calls `open` unknown or unsupported is ready") 
   const auto client = entity_with_lease("client", Pairing::get().client, 1000ms);
   const auto answer =
       GENERATE(wire::RemoteException::UnknownOperation, wire::RemoteException::Unsupported);
-  const Opener opener(server->participant(), {"test/LouderEcho", Guid{}},
+  const Opener opener(EntityAccess::participant(*server), {"test/LouderEcho", Guid{}},
                       [&](const wire::RequestId& id) { return answer_to_open(id, answer); });
   CHECK_NOTHROW(client->connect<LouderEcho>({.timeout = 20s, .foreign = true}));
 }

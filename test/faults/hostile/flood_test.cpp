@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <thread>
 
+#include "skein/detail/entity_access.hpp"
 #include "test/faults/exposed_service.hpp"
 #include "test/faults/messages.hpp"
 #include "test/faults/processes.hpp"
@@ -26,7 +27,8 @@ class Flood {
     dds::Qos qos;
     qos.partitions = {address.provider.hex()};
     for (std::size_t i = 0; i < size_of_flood(); ++i) {
-      writers_.push_back(entity.participant().create_writer(calls::request_topic(address), qos));
+      writers_.push_back(
+          EntityAccess::participant(entity).create_writer(calls::request_topic(address), qos));
     }
   }
 

@@ -5,6 +5,7 @@
 #include <mutex>
 
 #include "rpc/client/remote_channel.hpp"
+#include "skein/detail/entity_access.hpp"
 #include "test/faults/exposed_service.hpp"
 #include "test/faults/messages.hpp"
 #include "test/faults/processes.hpp"
@@ -59,14 +60,15 @@ struct Stage {
         channel(connect()),
         proxy(channel, 10min),
         rogue(entity_with_lease("rogue", Pairing::get().client, 1000ms)),
-        ear(rogue->participant(), service.address()) {
+        ear(EntityAccess::participant(*rogue), service.address()) {
     REQUIRE(eventually([&] { return ear.matched(); }));
     // What the ear hears first may have been said before it was there.
     REQUIRE(eventually([&] {
       proxy.label();
       return ear.client() != Guid{};
     }));
-    mouth = std::make_unique<Mouth>(rogue->participant(), service.address(), ear.client());
+    mouth =
+        std::make_unique<Mouth>(EntityAccess::participant(*rogue), service.address(), ear.client());
     // What is written before the other side has found the writer may be lost.
     REQUIRE(eventually([&] {
       mouth->say(session_ended({Guid::random(), 0}));
@@ -146,11 +148,11 @@ TEST_CASE_METHOD(Stage, "a forged dismissal does not end a connection") {
 
 TEST_CASE_METHOD(Stage, "who listens in on a connection, and leaves, does not end it") {
   {
-    Ear second(rogue->participant(), service.address());
+    Ear second(EntityAccess::participant(*rogue), service.address());
     dds::Qos qos;
     qos.partitions = {ear.client().hex()};
     const auto replies =
-        rogue->participant().create_reader(calls::reply_topic(service.address()), qos);
+        EntityAccess::participant(*rogue).create_reader(calls::reply_topic(service.address()), qos);
     REQUIRE(eventually([&] { return second.matched() && replies->matched_writers().size() == 2; }));
   }
   for (int i = 0; i < 100; ++i) CHECK(proxy.label() == "echo");
@@ -162,7 +164,7 @@ TEST_CASE_METHOD(Stage, "a request in another client's name ends none of that cl
   dds::Qos qos;
   qos.partitions = {service.id().hex()};
   const auto writer =
-      rogue->participant().create_writer(calls::request_topic(service.address()), qos);
+      EntityAccess::participant(*rogue).create_writer(calls::request_topic(service.address()), qos);
   REQUIRE(eventually([&] { return !writer->matched_readers().empty(); }));
   // What is written before the other side has found the writer may be lost.
   REQUIRE(eventually([&] {
@@ -191,15 +193,15 @@ TEST_CASE("a forged refusal of `open` does not keep a client from its provider")
   const auto client = entity_with_lease("client", Pairing::get().client, 1000ms);
   const auto rogue = entity_with_lease("rogue", Pairing::get().client, 1000ms);
   const calls::Address address{"test/LouderEcho", server->broker().new_provider()};
-  Ear provider(server->participant(), address);
-  Ear ear(rogue->participant(), address);
+  Ear provider(EntityAccess::participant(*server), address);
+  Ear ear(EntityAccess::participant(*rogue), address);
   const auto registration = server->broker().add_service(describe_echo(address.provider, "server"));
   auto connecting = std::async(std::launch::async, [&] {
     return client->connect<LouderEcho>({.provider = address.provider, .timeout = 60s});
   });
   REQUIRE(eventually([&] { return ear.client() != Guid{} && provider.client() != Guid{}; }));
 
-  Mouth forger(rogue->participant(), address, ear.client());
+  Mouth forger(EntityAccess::participant(*rogue), address, ear.client());
   Bytes refusal;
   wire::begin_reply(refusal, {ear.client(), 0}, wire::RemoteException::InvalidArgument,
                     wire::kOpen);
@@ -210,7 +212,7 @@ TEST_CASE("a forged refusal of `open` does not keep a client from its provider")
     REQUIRE(forger.heard());
   }
 
-  Mouth true_one(server->participant(), address, provider.client());
+  Mouth true_one(EntityAccess::participant(*server), address, provider.client());
   Bytes opened;
   wire::begin_reply(opened, {provider.client(), 0}, wire::RemoteException::Ok, wire::kOpen);
   wire::append_default_branch(opened);

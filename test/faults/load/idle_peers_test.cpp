@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "call_port/dds_call_port.hpp"
+#include "skein/detail/entity_access.hpp"
 #include "test/faults/messages.hpp"
 #include "test/faults/processes.hpp"
 #include "test/tools/network_space.hpp"
@@ -128,8 +129,9 @@ TEST_CASE("the capture sees what does go to those who were idle") {
   const auto foreigner = entity_with_lease("foreigner", neighbours.vendors[1], 1000ms);
   skein::dds::Qos qos;
   qos.partitions = {""};
-  const auto requests = foreigner->participant().create_writer(
-      skein::calls::request_topic({"test/LouderEcho", {}}), qos);
+  const auto requests =
+      skein::EntityAccess::participant(*foreigner)
+          .create_writer(skein::calls::request_topic({"test/LouderEcho", {}}), qos);
   CHECK(eventually([&] {
     requests->write(echo_request(requests->guid()));
     return std::ranges::all_of(neighbours.idle_servers, [](ChildProcess& server) {

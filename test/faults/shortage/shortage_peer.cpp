@@ -15,6 +15,7 @@
 
 #include "dds/port/port.hpp"
 #include "lone_entity.hpp"
+#include "skein/detail/entity_access.hpp"
 #include "skein/error.hpp"
 #include "test/connector/echo_service.hpp"
 
@@ -72,7 +73,8 @@ void call(const std::shared_ptr<dds::Vendor>& vendor) {
   const auto client = skein::test::make_lone_entity(vendor, "client");
   dds::Qos watched;
   watched.deadline = std::chrono::seconds(10);
-  const auto writer = client->participant().create_writer({"octets", "octets", false}, watched);
+  const auto writer =
+      EntityAccess::participant(*client).create_writer({"octets", "octets", false}, watched);
   if (client->connect<LouderEcho>().echo("x") != "x") throw Internal("another echo");
 }
 

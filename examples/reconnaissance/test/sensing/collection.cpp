@@ -5,7 +5,7 @@
 #include <functional>
 #include <numbers>
 
-#include "skein/synthesis.hpp"
+#include "skein/evaluation.hpp"
 
 namespace collection_test {
 

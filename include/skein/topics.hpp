@@ -1,19 +1,62 @@
 #pragma once
 
+#include <chrono>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
-#include "skein/detail/topic_type.hpp"
+#include "skein/detail/topic_ends.hpp"
 #include "skein/executor.hpp"
 #include "skein/topic_qos.hpp"
 
-namespace skein::dds {
-class Participant;
-}
-
 namespace skein {
+
+/// Counters since the publisher was made.
+struct PublisherCounters {
+  /// Values and disposals.
+  std::uint64_t published = 0;
+  /// Periods in which an instance had no value; see Qos::deadline.
+  std::uint64_t missed_deadlines = 0;
+};
+
+/// Publishes values of an IDL struct on a topic; made by Entity::publisher(). Thread-safe, movable:
+/// one that was moved from throws InvalidArgument. Destroy it before its entity.
+template <class T>
+class [[nodiscard]] Publisher {
+  static_assert(topics::kIsType<T>,
+                "a topic carries values of an IDL struct or union; an interface is provided by "
+                "Entity::provide() and called by Entity::connect()");
+
+ public:
+  /// Used by Entity::publisher().
+  explicit Publisher(std::unique_ptr<topics::TopicWriter> writer) : writer_(std::move(writer)) {}
+
+  /// Sends the value to all subscribers that are matched now, and keeps it for late joiners if the
+  /// QoS say so. Throws Overloaded if reliable subscribers make no room within `max_blocking`,
+  /// InvalidArgument for a value that CDR cannot carry. A value of more than 1 MiB that is
+  /// published best effort is logged, the first time: it hardly arrives.
+  void publish(const T& value) { topics::held(writer_).publish(&value); }
+
+  /// Disposes the instance with this value's key. Throws as publish() does.
+  void dispose(const T& value) requires Keyed<T> { topics::held(writer_).dispose(&value); }
+
+  /// Waits until all reliable subscribers that are matched now have what was published; false where
+  /// they have not by the timeout. Before a publisher goes: what they have not is lost then.
+  bool wait_for_acknowledgments(std::chrono::milliseconds timeout) {
+    return topics::held(writer_).wait_for_acknowledgments(timeout);
+  }
+
+  /// Number of subscribers that are matched now.
+  std::size_t subscribers() const { return topics::held(writer_).subscribers(); }
+
+  PublisherCounters counters() const { return topics::held(writer_).counters(); }
+
+ private:
+  std::unique_ptr<topics::TopicWriter> writer_;
+};
 
 /// Counters since the subscription was made.
 struct SubscriptionCounters {
@@ -41,33 +84,6 @@ struct SubscriptionOptions {
   Executor* executor = nullptr;
 };
 
-namespace topics {
-
-class Register;
-
-/// A subscription without its type.
-class TopicReader {
- public:
-  /// Called with each decoded value; without one, values wait until they are taken.
-  using Consumer = std::function<void(const void* value)>;
-
-  TopicReader(dds::Participant& participant, Executor& executor, const std::string& name,
-              const TopicType& type, const TopicQos& qos, Consumer consumer,
-              SubscriptionOptions options, Register* known);
-  ~TopicReader();
-  /// Decodes the oldest waiting value into `value`; false if none waits. Throws InvalidArgument if
-  /// there is a consumer.
-  bool take(void* value);
-  std::size_t publishers() const;
-  SubscriptionCounters counters() const;
-
- private:
-  struct State;
-  std::shared_ptr<State> state_;
-};
-
-}  // namespace topics
-
 /// Receives the values of a topic; made by Entity::subscription(). With a callback, the executor
 /// calls it for one value at a time, oldest first; without one, the user polls. Values wait in a
 /// queue that the QoS bound (`history_depth` per key, `max_waiting` in all): a slow subscriber
@@ -77,6 +93,14 @@ class TopicReader {
 ///
 /// Thread-safe, movable: one that was moved from throws InvalidArgument. The destructor waits for a
 /// running callback; do not destroy it from one. Destroy it before its entity.
+///
+/// ```cpp
+/// const auto chart = station.subscription<survey::Pose>(
+///     "pose", skein::TopicQos::sensor(), [&](const survey::Pose& pose) { show(pose); });
+///
+/// auto poses = drone.publisher<survey::Pose>("pose", skein::TopicQos::sensor());
+/// poses.publish({"drone", 12.0, -3.5});
+/// ```
 template <class T>
 class [[nodiscard]] Subscription {
   static_assert(topics::kIsType<T>,
@@ -86,13 +110,8 @@ class [[nodiscard]] Subscription {
  public:
   using Callback = std::function<void(const T& value)>;
 
-  /// In the systems that `qos` names, or in the partition "". Throws as Publisher() does.
-  Subscription(dds::Participant& participant, Executor& executor, const std::string& name,
-               const TopicQos& qos, Callback callback, SubscriptionOptions options = {},
-               topics::Register* known = nullptr)
-      : reader_(std::make_unique<topics::TopicReader>(
-            participant, executor, name, topics::topic_type<T>(), qos,
-            consumer_of(std::move(callback)), std::move(options), known)) {}
+  /// Used by Entity::subscription().
+  explicit Subscription(std::unique_ptr<topics::TopicReader> reader) : reader_(std::move(reader)) {}
 
   /// The oldest waiting value, or nullopt. Throws InvalidArgument, as latest() does, if the
   /// subscription has a callback.
@@ -114,13 +133,6 @@ class [[nodiscard]] Subscription {
   SubscriptionCounters counters() const { return topics::held(reader_).counters(); }
 
  private:
-  static topics::TopicReader::Consumer consumer_of(Callback callback) {
-    if (!callback) return nullptr;
-    return [callback = std::move(callback)](const void* value) {
-      callback(*static_cast<const T*>(value));
-    };
-  }
-
   std::unique_ptr<topics::TopicReader> reader_;
 };
 
