@@ -7,6 +7,7 @@
 #include "call_port/dds_call_port.hpp"
 #include "rpc/client/remote_channel.hpp"
 #include "rpc/server/remote_server.hpp"
+#include "rpc/server/sessions.hpp"
 #include "rpc/service/call_journal.hpp"
 #include "skein/error.hpp"
 #include "skein/introspection.idl.hpp"
@@ -364,7 +365,7 @@ TEST_CASE_METHOD(
     Pair, "what waits for room is bounded: a client may have half of it, and the rest is counted") {
   serving.valve.set(Valve::Mode::Full);
   constexpr std::size_t kSize = 16 << 20;
-  constexpr std::size_t kFit = rpc::RemoteServer::kMaxUnsent / 2 / kSize;
+  constexpr std::size_t kFit = rpc::ReplyContext::kMaxUnsent / 2 / kSize;
   const std::vector<std::uint8_t> content(kSize);
   std::vector<Call<std::vector<std::uint8_t>>> calls;
   for (std::size_t i = 0; i <= kFit; ++i) calls.push_back(echo().async_echo_octets(content));

@@ -17,12 +17,6 @@ namespace skein::rpc {
 /// its threads. What one of them asks for beyond its share is refused and counted.
 class RemoteServer {
  public:
-  /// Sessions in all. A peer may have no more than are left, so that there is one for a newcomer.
-  static constexpr std::size_t kMaxClients = 1024;
-  static constexpr std::size_t kMaxClientsOfPeer = 128;
-  /// Octets of replies that wait for room in all. A client may have no more than are left.
-  static constexpr std::size_t kMaxUnsent = 256 << 20;
-
   struct Options {
     /// Also serve clients that are not built with Skein. Off for managed interfaces.
     bool foreign_clients = true;

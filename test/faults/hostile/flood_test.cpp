@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <thread>
 
+#include "rpc/server/sessions.hpp"
 #include "skein/detail/entity_access.hpp"
 #include "test/faults/exposed_service.hpp"
 #include "test/faults/messages.hpp"
@@ -15,7 +16,7 @@ namespace wire = rpc::wire;
 
 namespace {
 
-constexpr std::size_t kMax = rpc::RemoteServer::kMaxClientsOfPeer;
+constexpr std::size_t kMax = rpc::Sessions::kMostOfPeer;
 
 /// Vendors need long to make thousands of writers known.
 std::size_t size_of_flood() { return Pairing::get().client->name() == "loopback" ? 3000 : 400; }
