@@ -9,6 +9,7 @@ import tempfile
 import unittest
 
 import budget_rules
+import class_functions
 import compile_rules
 import definition_rules
 import include_rules
@@ -142,7 +143,7 @@ class PublicHeaders(TreeTest):
 
 class Budget(TreeTest):
     CEILINGS = {"words of documents": 3, "users' headers": 1, "sources in the fullest folder": 1, "names that sources of two folders share": 0,
-                "pronouns in 1,000 words of comments": 500}
+                "pronouns in 1,000 words of comments": 500, "functions beyond 15 of classes with a mutex": 1}
 
     def setUp(self):
         super().setUp()
@@ -157,10 +158,48 @@ class Budget(TreeTest):
 
     def test_each_figure_above_its_ceiling_is_found(self):
         for path, text, figure in (("GUIDE.md", "more", "words of documents: 4"), ("include/skein/stream.hpp", "", "users' headers: 2"),
-                                   ("src/a/b.cpp", "", "fullest folder: 2"), ("src/b/a.hpp", "", "share: 1"), ("src/b/b.cpp", "// what where", "comments: 750.0")):
+                                   ("src/a/b.cpp", "", "fullest folder: 2"), ("src/b/a.hpp", "", "share: 1"), ("src/b/b.cpp", "// what where", "comments: 750.0"),
+                                   ("brokerless_discovery/c.hpp", self.crowd(17), "mutex: 2")):
             whole = self.write(path, text)
             self.assertFinds(budget_rules.budget(self.tree), figure)
             os.remove(whole)
+
+
+    @staticmethod
+    def crowd(functions):
+        return "class Crowd {\n" + "".join(f"  void f{i}();\n" for i in range(functions)) + "  std::mutex mutex_;\n};\n"
+
+
+class ClassFunctions(unittest.TestCase):
+    def test_functions_are_counted_and_nothing_else_that_has_parentheses(self):
+        self.assertEqual(list(class_functions.classes('''
+            // int comment();
+            template <class T>
+            class Channel::State final : public Base<int(char)> {
+             public:
+              using Action = std::function<void()>;
+              explicit State(int size) : size_(size) { other(); }
+              ~State();
+              State& operator=(const State&) = delete;
+              static_assert(sizeof(T) == 4);
+              enum class Phase { Open, Closed };
+              int size() const { if (size_ > 0) { return size_; } return 0; }
+              template <class Send>
+              auto in_time(std::pair<int, int> limit, Send send) const;
+              std::vector<std::function<void(int)>> all() const;
+
+             private:
+              struct Entry {
+                bool is_due() const;
+                Action action;
+              };
+              std::function<void(const Guid& peer)> on_peer_;
+              const char* text_ = "int text();";
+              std::atomic<int> size_{0};
+              mutable std::mutex mutex_;
+            };
+            struct Plain { void run(); };
+        ''')), [("Channel::State", 3, True), ("Entry", 1, False), ("Plain", 1, False)])
 
 
 class MissionLines(TreeTest):

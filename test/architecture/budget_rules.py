@@ -7,7 +7,10 @@ import os
 import re
 import subprocess
 
+import class_functions
+
 BUDGET = "test/architecture/budget.json"
+MOST_FUNCTIONS = 15
 MISSION_LINES = "thousand lines read to compile the mission"
 _COMMENT = re.compile(r"//+(.*)")
 _PRONOUN = re.compile(r"(who|whom|whose|whoever|what|whatever|where)$", re.IGNORECASE)
@@ -21,6 +24,7 @@ def figures(tree):
         "sources in the fullest folder": max(_sources(tree).values(), default=0),
         "names that sources of two folders share": _shared_names(tree),
         "pronouns in 1,000 words of comments": _pronouns(tree),
+        f"functions beyond {MOST_FUNCTIONS} of classes with a mutex": _functions_beyond(tree),
     }
 
 
@@ -63,6 +67,13 @@ def _shared_names(tree):
         for path in tree.files((".hpp", ".cpp", ".h", ".c"), folder):
             places[os.path.splitext(os.path.basename(path))[0]].add(os.path.dirname(path))
     return sum(1 for folders in places.values() if len(folders) > 1)
+
+
+def _functions_beyond(tree):
+    """A class under a lock has one job, so few functions: how many more there are in all."""
+    return sum(max(0, functions - MOST_FUNCTIONS) for folder in ("src", "brokerless_discovery")
+               for path in tree.files((".hpp", ".cpp"), folder)
+               for _, functions, has_mutex in class_functions.classes(tree.text(path)) if has_mutex)
 
 
 def _pronouns(tree):
