@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "brokerless_discovery/absences.hpp"
+#include "brokerless_discovery/departures.hpp"
 #include "brokerless_discovery/table.hpp"
 #include "dds/port/port.hpp"
 #include "skein/clock.hpp"

@@ -53,7 +53,7 @@ struct Broker::State : std::enable_shared_from_this<State> {
   mutable std::condition_variable changed;
   bool leaving = false;  // nobody waits for services any more
   Table table;
-  Absences absences;
+  Departures absences;
   std::atomic<std::uint64_t> generation{0};  // written under the lock
   std::map<std::uint64_t, std::shared_ptr<Observer>> observers;
   std::uint64_t last_observer = 0;

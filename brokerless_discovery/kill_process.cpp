@@ -11,7 +11,7 @@
 #include "core/system/abstract_socket.hpp"
 #include "core/system/bound_sockets.hpp"
 #include "core/system/other_process.hpp"
-#include "core/system/users.hpp"
+#include "core/system/trusted_users.hpp"
 
 namespace skein::brokerless_discovery {
 namespace {

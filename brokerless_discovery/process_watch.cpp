@@ -20,7 +20,7 @@
 #include "core/log.hpp"
 #include "core/system/abstract_socket.hpp"
 #include "core/system/other_process.hpp"
-#include "core/system/users.hpp"
+#include "core/system/trusted_users.hpp"
 #include "core/threads/stall_watch.hpp"
 #include "core/threads/start_thread.hpp"
 #include "skein/error.hpp"

@@ -97,7 +97,7 @@ std::shared_ptr<Channel> FailoverChannel::main_if_trusted() const {
 // The caller waits anyway, so its own thread tries one provider after the other, without a copy.
 void FailoverChannel::call_idempotent(const OperationInfo& operation, const void* in, void* out,
                                       const CallTime& time) {
-  Retries retries(time.deadline, budget_);
+  RetryRule retries(time.deadline, budget_);
   std::exception_ptr error;
   std::optional<ProviderConnection> connection;
   for (;;) {

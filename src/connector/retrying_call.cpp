@@ -28,7 +28,7 @@ RetryingCall::RetryingCall(const std::shared_ptr<FailoverChannel>& channel,
 RetryingCall::~RetryingCall() { clock_.cancel(hedge_timer_); }
 
 ProviderQuery RetryingCall::wanted() {
-  Retries::Failures failures;
+  RetryRule::Failures failures;
   {
     std::lock_guard lock(mutex_);
     failures = retries_.failures();

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "retries.hpp"
+#include "retry_rule.hpp"
 #include "skein/detail/call_memory.hpp"
 #include "waiting_call.hpp"
 
@@ -59,7 +59,7 @@ class RetryingCall final : public WaitingCall {
 
   const bool hedged_;  // then two tries may be made at once, and each has an out struct of its own
   std::mutex mutex_;   // guards what follows
-  Retries retries_;
+  RetryRule retries_;
   Attempts attempts_{&call_memory()};
   TimerId hedge_timer_ = 0;
   bool cancelled_ = false;

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "failover_channel.hpp"
-#include "retries.hpp"
+#include "retry_rule.hpp"
 #include "skein/detail/call_memory.hpp"
 #include "skein/error.hpp"
 

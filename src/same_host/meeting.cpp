@@ -21,7 +21,7 @@
 #include "core/recent_set.hpp"
 #include "core/system/abstract_socket.hpp"
 #include "core/system/other_process.hpp"
-#include "core/system/users.hpp"
+#include "core/system/trusted_users.hpp"
 #include "core/threads/start_thread.hpp"
 #include "doorbell.hpp"
 #include "pass_descriptor.hpp"

@@ -13,7 +13,7 @@
 #include "core/system/bound_sockets.hpp"
 #include "core/system/close_elsewhere.hpp"
 #include "core/system/other_process.hpp"
-#include "core/system/users.hpp"
+#include "core/system/trusted_users.hpp"
 #include "skein/guid.hpp"
 #include "test/tools/eventually.hpp"
 #include "test/tools/lingering_connection.hpp"

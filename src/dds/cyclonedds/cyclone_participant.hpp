@@ -5,8 +5,8 @@
 #include <optional>
 #include <set>
 
-#include "absence_watch.hpp"
 #include "cyclone_entity.hpp"
+#include "cyclone_lease_watch.hpp"
 #include "dds/port/topic_table.hpp"
 #include "dds/rtps/multicast_membership.hpp"
 #include "discovered_endpoints.hpp"
@@ -61,7 +61,7 @@ class CycloneParticipant final : public Participant {
   std::set<Guid> present_;
   std::atomic<dds_entity_t> watcher_handle_{0};
   Entity watcher_;  // reads who is there; goes first
-  std::optional<AbsenceWatch> absences_;
+  std::optional<CycloneLeaseWatch> absences_;
   std::optional<MulticastMembership> membership_;
 };
 

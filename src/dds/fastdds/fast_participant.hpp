@@ -58,7 +58,7 @@ class FastParticipant final : public Participant, private rtps::RTPSParticipantL
   /// Tells others, often enough for `lease`, that this participant's writers live.
   void assert_liveliness_for(std::chrono::nanoseconds lease);
   RtpsGuard& guard() noexcept { return transport_->state->guard; }
-  LivelinessTracker& signs() noexcept { return transport_->state->signs; }
+  FastLeaseWatch& signs() noexcept { return transport_->state->signs; }
   Endpoints& endpoints() noexcept { return endpoints_; }
   int acquire_topic(const Topic& topic);
   void release_topic(const std::string& name);

@@ -9,7 +9,7 @@
 #include <system_error>
 
 #include "core/system/held_signal.hpp"
-#include "core/system/users.hpp"
+#include "core/system/trusted_users.hpp"
 
 namespace skein::dds::fastdds {
 namespace {

@@ -11,8 +11,8 @@
 #include "acknack_repair.hpp"
 #include "announcement_pace.hpp"
 #include "dds/rtps/rtps_guard.hpp"
+#include "fast_lease_watch.hpp"
 #include "forgetting.hpp"
-#include "liveliness_tracker.hpp"
 #include "suspend_detector.hpp"
 
 namespace skein::dds::fastdds {
@@ -79,7 +79,7 @@ struct StartupTransportDescriptor : eprosima::fastdds::rtps::ChainingTransportDe
           guard(std::move(addresses), "dds/fastdds", SkippedNumbers::Counted) {}
     std::atomic<bool> open{false};        // lets messages out
     std::atomic<std::uint32_t> ports{0};  // on which it listens
-    LivelinessTracker signs;
+    FastLeaseWatch signs;
     SuspendDetector watch;
     AnnouncementPace pace;
     RtpsGuard guard;

@@ -129,7 +129,7 @@ class Hub : public std::enable_shared_from_this<Hub> {
   using Lock = std::unique_lock<std::mutex>;
   using MatchId = std::pair<Guid, Guid>;  // writer, reader
 
-  // Who hears and knows whom (presence.cpp).
+  // Who hears and knows whom (loopback_lease_watch.cpp).
   bool connected(const ParticipantCore& one, const ParticipantCore& other) const;
   void update_presence();
   void hear(ParticipantCore& observer, const std::shared_ptr<ParticipantCore>& observed,

@@ -6,7 +6,7 @@
 #include <cerrno>
 
 #include "core/system/abstract_socket.hpp"
-#include "core/system/users.hpp"
+#include "core/system/trusted_users.hpp"
 
 namespace skein::launch {
 
@@ -28,7 +28,7 @@ void RequestServer::take_clients() {
   if (listener_ < 0) return;
   is_crowded_ = !let_in(listener_, kAcceptedInARow, [&](FileDescriptor& socket) {
     const auto owner = other_end(socket);
-    if (!owner || (!is_own_user(owner->uid) && owner->uid != 0)) return;
+    if (!owner || !is_own_user_or_root(owner->uid)) return;
     if (clients_.size() == kMostClients) clients_.pop_front();
     clients_.push_back({std::move(socket), ""});
   });

@@ -20,7 +20,7 @@
 #include "core/log.hpp"
 #include "core/system/abstract_socket.hpp"
 #include "core/system/bound_sockets.hpp"
-#include "core/system/users.hpp"
+#include "core/system/trusted_users.hpp"
 #include "mission/process/wake_up.hpp"
 #include "skein/error.hpp"
 

@@ -72,43 +72,6 @@ class Service::Running {
   Running* next_ = nullptr;
 };
 
-/// Lets the calls of a service with CallThread::Caller run one at a time, whichever thread is
-/// theirs. Those of others have their turn at once.
-class Service::Turn {
- public:
-  /// Waits for it until the deadline, or until the service is closed.
-  Turn(Service& service, Instant deadline)
-      : service_(service.options_.thread == CallThread::Caller ? &service : nullptr) {
-    if (!service_) return;
-    std::unique_lock lock(service_->turn_mutex_);
-    waited_ = service_->turn_taken_;
-    if (waited_) ++service_->turns_awaited_;
-    came_ = wait_until(service_->clock_, deadline, lock, service_->turn_ended_,
-                       [&] { return !service_->turn_taken_ || service_->closed_; }) &&
-            !service_->closed_;
-    if (waited_) --service_->turns_awaited_;
-    if (came_) service_->turn_taken_ = true;
-  }
-  ~Turn() {
-    if (!service_ || !came_) return;
-    {
-      std::lock_guard lock(service_->turn_mutex_);
-      service_->turn_taken_ = false;
-    }
-    service_->turn_ended_.notify_one();
-  }
-  Turn(const Turn&) = delete;
-  Turn& operator=(const Turn&) = delete;
-
-  bool came() const noexcept { return came_; }
-  bool waited() const noexcept { return waited_; }
-
- private:
-  Service* const service_;
-  bool came_ = true;
-  bool waited_ = false;
-};
-
 /// A call that its implementation answers later. It outlives the service where the implementation
 /// keeps it for longer, and refers to it weakly: the service has the implementation.
 class Service::Deferred final : public PendingReply {
@@ -183,6 +146,7 @@ Service::Service(std::shared_ptr<Servant> servant, Executor& executor, Clock& cl
       meter_(servant_->interface_info()),
       queue_(options_.queue) {
   if (options_.strand.is_nil()) options_.strand = options_.id;
+  if (options_.thread == CallThread::Caller) caller_turns_.emplace(clock);
   if (options_.thread == CallThread::Caller && options_.threads > 1) {
     throw InvalidArgument(std::string(interface_info().name) +
                           " is to run on its callers' threads, "
@@ -205,41 +169,6 @@ std::shared_ptr<Session> Service::open(const OpenRequest& request) const {
   return options_.open ? options_.open(request) : nullptr;
 }
 
-void Service::submit(const std::shared_ptr<Invocation>& invocation,
-                     const std::function<bool()>& may_run) {
-  OperationMeter& meter = meter_.of(*invocation->operation);
-  OperationMeter::count(meter.received);
-  invocation->arrived = clock_.now();
-  note_begin(*invocation->operation, *invocation);
-  if (invocation->operation->stream) stream_submitted_ = true;
-  std::optional<Turn> turn;
-  if (may_run && runs_on_arrival(*invocation->operation)) {
-    turn.emplace(*this, Instant::min());  // who would have to wait for it queues
-  }
-  bool here = false;
-  try {
-    refuse_self_wait(*invocation);
-    here = turn && turn->came() && may_run();
-    if (!here) enqueue(invocation);
-    // Again: the service's own thread may have left for something else meanwhile.
-    if (invocation->operation->stream) stream_submitted_ = true;
-  } catch (const Error&) {
-    OperationMeter::count(meter.refused);
-    note_end(*invocation->operation, *invocation, std::current_exception());
-    throw;
-  }
-  // What is thrown there ends the process on the executor's thread, too; on this one it would be
-  // told to who may be gone.
-  if (here) [&]() noexcept { execute_in_turn(invocation, true, invocation->arrived); }();
-}
-
-// What waits in the queue has come earlier, from the same client perhaps. After a long call
-// everything queues first that has come meanwhile: some of it may be cancelled by what comes next.
-bool Service::runs_on_arrival(const OperationInfo& operation) const {
-  return Reception::is_of(*this) && !operation.stream && !is_deferred(operation) &&
-         accepted_ == 0 && !latest_was_long_.load(std::memory_order_relaxed);
-}
-
 void Service::note_begin(const OperationInfo& operation, const Invocation& frame) {
   if (!options_.journal) return;
   options_.journal->note(introspection::CallStep::Received, frame.connection, frame.number,
@@ -258,33 +187,6 @@ void Service::answer(Invocation& invocation, const void* out, std::exception_ptr
   invocation.respond(out, std::move(error));
 }
 
-void Service::enqueue(std::shared_ptr<Invocation> invocation) {
-  {
-    std::lock_guard lock(queue_mutex_);
-    if (closed_) throw being_withdrawn();
-    if (!queue_.has_room(invocation->connection)) {
-      throw Overloaded("the queue of " + std::string(interface_info().name) +
-                       " is full; the call was not executed");
-    }
-    if (is_deferred(*invocation->operation) && !may_owe(invocation->connection)) {
-      throw Overloaded(std::string(interface_info().name) +
-                       " owes as many answers as it may; the call was not executed");
-    }
-    queue_.push(std::move(invocation));
-    ++accepted_;
-  }
-  // Unlocked: on one processor the thread that it wakes runs at once, and needs the lock. The
-  // executor ends after close(), which leaves nothing in the queue.
-  executor_.post_or_run([self = shared_from_this()] { self->execute_next(); });
-}
-
-void Service::execute_next() {
-  const auto next = take_next();
-  if (!next) return;
-  execute(next);
-  note_done();
-}
-
 void Service::note_done() {
   --accepted_;
   if (!*leaving_) return;
@@ -294,7 +196,7 @@ void Service::note_done() {
 
 bool Service::others_wait() const {
   std::lock_guard lock(queue_mutex_);
-  return queue_.size() > 0 || turns_awaited_ > 0;
+  return queue_.size() > 0 || (caller_turns_ && caller_turns_->awaited() > 0);
 }
 
 void Service::leave() { *leaving_ = true; }
@@ -312,48 +214,6 @@ bool Service::finish(Instant deadline) {
     closed_ = true;
     return true;
   }
-}
-
-void Service::call_here(const OperationInfo& operation, const void* in, void* out,
-                        Invocation& frame) {
-  OperationMeter& meter = meter_.of(operation);
-  OperationMeter::count(meter.received);
-  note_begin(operation, frame);
-  try {
-    begin_here(meter, frame);
-    const Instant arrived = frame.begun;
-    const Turn turn(*this, frame.deadline);
-    if (turn.waited()) {
-      frame.begun = clock_.now();
-      meter.waited.record(frame.begun - arrived);
-    }
-    if (!turn.came()) refuse_turn(meter, operation);
-    dispatch(operation, in, out, frame);
-    refuse_too_late(operation, frame);
-  } catch (...) {
-    note_end(operation, frame, std::current_exception());
-    throw;
-  }
-  note_end(operation, frame, nullptr);
-}
-
-void Service::begin_here(OperationMeter& meter, const Invocation& frame) const {
-  try {
-    refuse_self_wait(frame);
-  } catch (const Error&) {
-    OperationMeter::count(meter.refused);
-    throw;
-  }
-}
-
-void Service::refuse_turn(OperationMeter& meter, const OperationInfo& operation) const {
-  if (closed_) {
-    OperationMeter::count(meter.refused);
-    throw being_withdrawn();
-  }
-  OperationMeter::count(meter.expired);
-  throw TimedOut("the deadline passed while other calls of " + std::string(interface_info().name) +
-                 " ran; " + quoted(operation) + " was not executed");
 }
 
 void Service::refuse_self_wait(const Invocation& invocation) const {
@@ -396,12 +256,12 @@ NotSent Service::being_withdrawn() const {
 void Service::close() {
   std::vector<std::shared_ptr<PendingReply>> owed;
   {
-    std::scoped_lock lock(owner_mutex_, mutex_, turn_mutex_);
+    std::scoped_lock lock(owner_mutex_, mutex_);
     *leaving_ = closed_ = true;
     for (const Running* each = running_; each; each = each->next()) stop(each->invocation());
     for (Deferred* const each : deferred_) owed.push_back(each->weak_from_this().lock());
   }
-  turn_ended_.notify_all();
+  if (caller_turns_) caller_turns_->close();
   for (const auto& each : owed) {
     if (!each) continue;  // its last copy goes just now
     auto& deferred = static_cast<Deferred&>(*each);
@@ -438,11 +298,6 @@ void Service::stop(Invocation& invocation) const {
 
 bool Service::is_deferred(const OperationInfo& operation) const noexcept {
   return servant_->answers_later() && !operation.stream && !operation.oneway;
-}
-
-void Service::execute(const std::shared_ptr<Invocation>& invocation) {
-  const Turn turn(*this, invocation->deadline);
-  execute_in_turn(invocation, turn.came(), clock_.now());
 }
 
 void Service::execute_in_turn(const std::shared_ptr<Invocation>& invocation, bool turn_came,

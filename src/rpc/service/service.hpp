@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <unordered_set>
@@ -12,6 +13,7 @@
 
 #include "rpc/service/call_journal.hpp"
 #include "rpc/service/call_recorder.hpp"
+#include "rpc/service/caller_turns.hpp"
 #include "rpc/service/fair_queue.hpp"
 #include "rpc/service/outgoing_stream.hpp"
 #include "rpc/service/service_meter.hpp"
@@ -179,8 +181,8 @@ class Service : public std::enable_shared_from_this<Service> {
  private:
   class Deferred;
   class Running;
-  class Turn;
   std::size_t count_overdue() const;
+  CallerTurns* caller_turns() noexcept { return caller_turns_ ? &*caller_turns_ : nullptr; }
   void enqueue(std::shared_ptr<Invocation> invocation);
   void execute_next();
   std::shared_ptr<Invocation> take_next();
@@ -227,10 +229,7 @@ class Service : public std::enable_shared_from_this<Service> {
   ServiceMeter meter_;
   mutable std::mutex queue_mutex_;
   FairQueue queue_;
-  std::mutex turn_mutex_;
-  std::condition_variable turn_ended_;
-  bool turn_taken_ = false;
-  std::atomic<std::size_t> turns_awaited_{0};
+  std::optional<CallerTurns> caller_turns_;   // with CallThread::Caller
   std::atomic<bool> latest_was_long_{false};  // of those that are no streams
   std::atomic<bool> stream_submitted_{false};
   mutable std::mutex mutex_;

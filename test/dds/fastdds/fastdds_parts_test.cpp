@@ -5,8 +5,8 @@
 #include "dds/fastdds/acknack_repair.hpp"
 #include "dds/fastdds/announcement_pace.hpp"
 #include "dds/fastdds/events.hpp"
+#include "dds/fastdds/fast_lease_watch.hpp"
 #include "dds/fastdds/forgetting.hpp"
-#include "dds/fastdds/liveliness_tracker.hpp"
 #include "dds/fastdds/participant_leases.hpp"
 #include "dds/fastdds/received_payloads.hpp"
 #include "dds/fastdds/suspend_detector.hpp"
@@ -331,8 +331,8 @@ TEST_CASE("farewells and announcements cut off anywhere are read no further than
 }
 
 TEST_CASE("a participant that is not heard of for its lease is overdue, once") {
-  LivelinessTracker signs;
-  LivelinessTracker::Time now{1h};
+  FastLeaseWatch signs;
+  FastLeaseWatch::Time now{1h};
   signs.watch(now, 10ms);
   signs.follow(participant(1), 60ms, now);
   signs.follow(participant(2), 60ms, now);
@@ -348,8 +348,8 @@ TEST_CASE("a participant that is not heard of for its lease is overdue, once") {
 }
 
 TEST_CASE("while this process did not run, nobody's lease runs out") {
-  LivelinessTracker signs;
-  LivelinessTracker::Time now{1h};
+  FastLeaseWatch signs;
+  FastLeaseWatch::Time now{1h};
   signs.watch(now, 10ms);
   signs.follow(participant(1), 60ms, now);
   CHECK(signs.watch(now += 1h, 10ms).empty());

@@ -1,4 +1,4 @@
-#include "liveliness_tracker.hpp"
+#include "fast_lease_watch.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -6,23 +6,23 @@
 namespace skein::dds::fastdds {
 namespace {
 
-constexpr auto kForever = std::numeric_limits<LivelinessTracker::Duration::rep>::max();
+constexpr auto kForever = std::numeric_limits<FastLeaseWatch::Duration::rep>::max();
 
 }  // namespace
 
 // The time without the pauses.
-LivelinessTracker::Duration::rep LivelinessTracker::counted(Time now) const {
+FastLeaseWatch::Duration::rep FastLeaseWatch::counted(Time now) const {
   return now.time_since_epoch().count() - pauses_.load(std::memory_order_relaxed);
 }
 
-void LivelinessTracker::follow(const Guid& participant, std::optional<Duration> lease, Time now) {
+void FastLeaseWatch::follow(const Guid& participant, std::optional<Duration> lease, Time now) {
   std::lock_guard lock(mutex_);
   Followed& followed = followed_[participant];
   followed.last = counted(now);
   followed.lease = lease ? lease->count() : kForever;
 }
 
-void LivelinessTracker::forget(const Guid& participant) {
+void FastLeaseWatch::forget(const Guid& participant) {
   constexpr std::size_t kMany = 4096;  // that went and may come back
   std::lock_guard lock(mutex_);
   followed_.erase(participant);
@@ -30,7 +30,7 @@ void LivelinessTracker::forget(const Guid& participant) {
   returned_[participant] = 0;
 }
 
-bool LivelinessTracker::heard(const Guid& participant, Time now) {
+bool FastLeaseWatch::heard(const Guid& participant, Time now) {
   constexpr Duration kJust = std::chrono::milliseconds(100);
   std::shared_lock lock(mutex_);
   const auto found = followed_.find(participant);
@@ -45,7 +45,7 @@ bool LivelinessTracker::heard(const Guid& participant, Time now) {
   return present - returned < kJust.count();
 }
 
-std::vector<Guid> LivelinessTracker::watch(Time now, Duration period) {
+std::vector<Guid> FastLeaseWatch::watch(Time now, Duration period) {
   std::lock_guard watching(watching_);
   const Duration passed = last_watch_ == Time{} ? Duration::zero() : now - last_watch_;
   last_watch_ = now;
@@ -62,7 +62,7 @@ std::vector<Guid> LivelinessTracker::watch(Time now, Duration period) {
   return overdue;
 }
 
-std::vector<Guid> LivelinessTracker::drop_all() {
+std::vector<Guid> FastLeaseWatch::drop_all() {
   std::vector<Guid> all;
   std::lock_guard lock(mutex_);
   for (const auto& [participant, followed] : followed_) all.push_back(participant);
@@ -70,7 +70,7 @@ std::vector<Guid> LivelinessTracker::drop_all() {
   return all;
 }
 
-bool LivelinessTracker::alive(const Guid& participant, Duration lease, Time now) const {
+bool FastLeaseWatch::alive(const Guid& participant, Duration lease, Time now) const {
   std::shared_lock lock(mutex_);
   const auto found = followed_.find(participant);
   return found == followed_.end() || counted(now) - found->second.last <= lease.count();

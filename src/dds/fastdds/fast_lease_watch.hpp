@@ -23,7 +23,7 @@ namespace skein::dds::fastdds {
 /// Time counts only while it is watched: a pause between two calls of watch() that is much longer
 /// than the one asked for says that this process did not run, and that others' packets may
 /// wait in its sockets. Thread-safe.
-class LivelinessTracker {
+class FastLeaseWatch {
  public:
   using Time = std::chrono::steady_clock::time_point;
   using Duration = std::chrono::nanoseconds;

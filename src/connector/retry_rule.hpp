@@ -20,9 +20,9 @@ struct Asked {
 
 /// How often, and by whom, one call to an idempotent operation may still be tried. admit() is
 /// called by one thread at a time.
-class Retries {
+class RetryRule {
  public:
-  Retries(Instant deadline, std::shared_ptr<RetryBudget> budget)
+  RetryRule(Instant deadline, std::shared_ptr<RetryBudget> budget)
       : deadline_(deadline), budget_(std::move(budget)) {
     budget_->earn();
   }
@@ -66,7 +66,7 @@ class Retries {
 /// or whose connection stands, so that it answered with the failure itself, is not asked again, and
 /// as long as one stands nobody is waited for. One that was lost may be asked where nobody else is
 /// available. Not under a lock that a call's end takes: it may be the last to hold a connection.
-ProviderQuery wanted_after(const Retries::Failures& failures, Instant deadline);
+ProviderQuery wanted_after(const RetryRule::Failures& failures, Instant deadline);
 
 /// The same error with more words; what is no Error stays as it is.
 std::exception_ptr with_words(const std::exception_ptr& error, const std::string& words);

@@ -11,4 +11,7 @@ bool is_unmapped(uid_t user);
 /// Whether `user`, as the kernel tells of another process, is certainly this process's.
 bool is_own_user(uid_t user);
 
+/// The same, or the superuser.
+bool is_own_user_or_root(uid_t user);
+
 }  // namespace skein

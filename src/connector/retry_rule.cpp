@@ -1,4 +1,4 @@
-#include "retries.hpp"
+#include "retry_rule.hpp"
 
 #include <optional>
 #include <utility>
@@ -22,7 +22,8 @@ std::optional<ErrorCode> code_of(const std::exception_ptr& error) {
 
 }  // namespace
 
-bool Retries::admit(std::exception_ptr& error, const Asked& failed, Instant now, bool others_run) {
+bool RetryRule::admit(std::exception_ptr& error, const Asked& failed, Instant now,
+                      bool others_run) {
   const auto code = code_of(error);
   if (!code) return false;
   const bool refused = is_refusal(*code);
@@ -42,7 +43,7 @@ bool Retries::admit(std::exception_ptr& error, const Asked& failed, Instant now,
 }
 
 // Whether the provider died of the request, or before it came, nobody can know.
-bool Retries::admit_loss(std::exception_ptr& error) {
+bool RetryRule::admit_loss(std::exception_ptr& error) {
   if (std::exchange(lost_, true)) {
     error = with_words(error,
                        "; it was lost with its provider for the second time, so that it is not "
@@ -54,7 +55,7 @@ bool Retries::admit_loss(std::exception_ptr& error) {
   return true;
 }
 
-ProviderQuery wanted_after(const Retries::Failures& failures, Instant deadline) {
+ProviderQuery wanted_after(const RetryRule::Failures& failures, Instant deadline) {
   ProviderQuery wanted{deadline};
   for (const auto& [asked, refused] : failures) {
     const auto channel = asked.channel.lock();

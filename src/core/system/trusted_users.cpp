@@ -1,4 +1,4 @@
-#include "core/system/users.hpp"
+#include "core/system/trusted_users.hpp"
 
 #include <unistd.h>
 
@@ -21,5 +21,7 @@ bool is_unmapped(uid_t user) {
 }
 
 bool is_own_user(uid_t user) { return user == geteuid() && !is_unmapped(user); }
+
+bool is_own_user_or_root(uid_t user) { return user == 0 || is_own_user(user); }
 
 }  // namespace skein

@@ -24,11 +24,11 @@ namespace skein::dds::cyclonedds {
 ///
 /// It reaches into Cyclone 0.10, where a participant's lease is known to its own thread alone until
 /// the listener for participants has returned.
-class AbsenceWatch {
+class CycloneLeaseWatch {
  public:
-  explicit AbsenceWatch(ddsi_domaingv& domain);
+  explicit CycloneLeaseWatch(ddsi_domaingv& domain);
   /// Waits for its thread. Before Cyclone's domain goes.
-  ~AbsenceWatch();
+  ~CycloneLeaseWatch();
 
   /// From the listener that is told of a participant; gives its lease into this watch's hands.
   void found(const Guid& participant);

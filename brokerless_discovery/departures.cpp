@@ -1,4 +1,4 @@
-#include "brokerless_discovery/absences.hpp"
+#include "brokerless_discovery/departures.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -31,7 +31,7 @@ std::string in_words(const Absence& absence, Instant now) {
   return text + " and is not back";
 }
 
-Absences::Known& Absences::known(const ServiceDescription& description) {
+Departures::Known& Departures::known(const ServiceDescription& description) {
   const auto found = std::ranges::find_if(known_, [&](const Known& known) {
     return known.absence.service == description.service &&
            known.absence.entity == description.entity;
@@ -42,7 +42,7 @@ Absences::Known& Absences::known(const ServiceDescription& description) {
   return known_.back();
 }
 
-void Absences::note(const Table::Changes& changes, std::string_view owner, Instant now) {
+void Departures::note(const Table::Changes& changes, std::string_view owner, Instant now) {
   for (const Change& change : changes) {
     if (change.description->owner != owner) continue;
     Known& known = this->known(*change.description);
@@ -55,7 +55,7 @@ void Absences::note(const Table::Changes& changes, std::string_view owner, Insta
   }
 }
 
-std::vector<Absence> Absences::of(std::string_view service) const {
+std::vector<Absence> Departures::of(std::string_view service) const {
   std::vector<Absence> absent;
   for (const Known& known : known_) {
     if (!known.back && known.absence.service == service) absent.push_back(known.absence);

@@ -1,4 +1,4 @@
-#include "absence_watch.hpp"
+#include "cyclone_lease_watch.hpp"
 
 #include <pthread.h>
 
@@ -33,12 +33,12 @@ ddsi_guid_t participant_guid(const Guid& participant) {
 
 }  // namespace
 
-AbsenceWatch::AbsenceWatch(ddsi_domaingv& domain)
+CycloneLeaseWatch::CycloneLeaseWatch(ddsi_domaingv& domain)
     : domain_(domain), thread_(start_thread("skein-dds-lease", [this] { run(); })) {
   pthread_setname_np(thread_.native_handle(), "skein-dds-lease");
 }
 
-AbsenceWatch::~AbsenceWatch() {
+CycloneLeaseWatch::~CycloneLeaseWatch() {
   {
     std::lock_guard lock(mutex_);
     stopping_ = true;
@@ -47,7 +47,7 @@ AbsenceWatch::~AbsenceWatch() {
   thread_.join();
 }
 
-void AbsenceWatch::found(const Guid& participant) {
+void CycloneLeaseWatch::found(const Guid& participant) {
   const ddsi_guid_t guid = participant_guid(participant);
   std::lock_guard lock(mutex_);
   // One that Cyclone watches already it goes on watching.
@@ -55,19 +55,19 @@ void AbsenceWatch::found(const Guid& participant) {
   if (announced != 0ns) leases_[participant] = announced;
 }
 
-void AbsenceWatch::lost(const Guid& participant) {
+void CycloneLeaseWatch::lost(const Guid& participant) {
   std::lock_guard lock(mutex_);
   leases_.erase(participant);
 }
 
-nanoseconds AbsenceWatch::silence_of(const Guid& participant) {
+nanoseconds CycloneLeaseWatch::silence_of(const Guid& participant) {
   const ddsi_guid_t guid = participant_guid(participant);
   // One that was lost may just be found again, and its lease be lengthened.
   std::lock_guard lock(mutex_);
   return nanoseconds(skein_silence(&domain_, &guid));
 }
 
-nanoseconds AbsenceWatch::check(nanoseconds forgiven) {
+nanoseconds CycloneLeaseWatch::check(nanoseconds forgiven) {
   std::map<Guid, nanoseconds> leases;
   {
     std::lock_guard lock(mutex_);
@@ -86,7 +86,7 @@ nanoseconds AbsenceWatch::check(nanoseconds forgiven) {
   return std::max<nanoseconds>(next, 1ms);
 }
 
-void AbsenceWatch::give_up(const Guid& participant) {
+void CycloneLeaseWatch::give_up(const Guid& participant) {
   constexpr auto kPatience = 10s;
   const ddsi_guid_t guid = participant_guid(participant);
   GivenUp given_up{{}, Clock::now() + kPatience};
@@ -99,7 +99,7 @@ void AbsenceWatch::give_up(const Guid& participant) {
   given_up_[participant] = std::move(given_up);
 }
 
-void AbsenceWatch::delete_left_over() {
+void CycloneLeaseWatch::delete_left_over() {
   for (const auto& [participant, given_up] : given_up_) {
     for (const ddsi_guid_t& endpoint : given_up.endpoints)
       skein_delete_left_over(&domain_, &endpoint);
@@ -108,7 +108,7 @@ void AbsenceWatch::delete_left_over() {
   std::erase_if(given_up_, [&](const auto& each) { return each.second.until < now; });
 }
 
-void AbsenceWatch::run() {
+void CycloneLeaseWatch::run() {
   WatchedThread watched("skein-dds-lease");
   nanoseconds late{};
   std::unique_lock lock(mutex_);

@@ -24,7 +24,7 @@ struct Absence {
 std::string in_words(const Absence& absence, Instant now);
 
 /// The managed services of one entity that have gone, until they are back. Not thread-safe.
-class Absences {
+class Departures {
  public:
   /// The oldest are forgotten first: their names come from the network.
   static constexpr std::size_t kMost = 64;
