@@ -82,7 +82,7 @@ std::string difference(const InterfaceInfo& client, const ServiceDescription& pr
 
 std::string difference(const InterfaceInfo& client, const ServiceDescription& provider,
                        const types::TypeSystem& told) {
-  const std::string plain = difference(client, provider);
+  std::string plain = difference(client, provider);
   if (plain.empty() || client.description.empty()) return plain;
   const auto found = idl::difference_of_interfaces(scoped_interface_name(std::string(client.name)),
                                                    describe(client), told);

@@ -9,10 +9,10 @@
 
 #include "calls/skein_peer.hpp"
 #include "echo.idl.hpp"
+#include "entity/entity_access.hpp"
 #include "harness/peer.hpp"
 #include "introspection/topic_tap.hpp"
 #include "recording/recorder.hpp"
-#include "skein/detail/entity_access.hpp"
 #include "skein/error.hpp"
 
 namespace skein::benchmarks {

@@ -27,7 +27,7 @@ namespace skein {
 /// ```cpp
 /// auto first = surveyor.async_minutes(kField);  // returns at once
 /// auto second = surveyor.async_minutes(kField);
-/// const double both = first.get() + second.get();
+/// const double total_minutes = first.get() + second.get();
 /// ```
 template <class Result>
 class [[nodiscard]] Call {
@@ -66,8 +66,9 @@ class [[nodiscard]] Call {
   void cancel() { pending().cancel(); }
 
   /// Runs `action` when the call is finished; at once if it already is. It runs on the thread that
-  /// finishes the call, possibly a vendor's or one that waits for another call, so it must neither
-  /// block nor run user code. At most one action; do not combine it with then() or co_await.
+  /// finishes the call, possibly one of the library's or one that waits for another call, so it
+  /// must neither block nor run user code. At most one action; do not combine it with then() or
+  /// co_await.
   void notify(Action action) { pending().on_finished(std::move(action)); }
 
   /// A function that does what cancel() does. Any thread may call it at any time; it has no effect
@@ -206,8 +207,8 @@ class Reply {
   /// Runs `action` once nobody waits for the answer any more: the caller has cancelled, its
   /// deadline has passed there, it is gone, or the service is withdrawn. At once if that is so
   /// already; not after the answer. `reply.on_cancel(call.canceller())` passes it on to another
-  /// call. It runs on the thread that notices, possibly a vendor's, so it must neither block nor
-  /// run user code. At most one action.
+  /// call. It runs on the thread that notices, possibly one of the library's, so it must neither
+  /// block nor run user code. At most one action.
   void on_cancel(Action action) const { pending().on_cancel(std::move(action)); }
 
  private:

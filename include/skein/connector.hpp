@@ -1,14 +1,19 @@
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "skein/call.hpp"
+#include "skein/clock.hpp"
 #include "skein/constraint.hpp"
+#include "skein/detail/channel.hpp"
 #include "skein/detail/service_reference.hpp"
+#include "skein/guid.hpp"
 
 namespace skein::brokerless_discovery {
 struct Query;
@@ -97,14 +102,14 @@ struct Connected {
 };
 
 /// The connector of Oswald's architecture (2004): connect() returns a typed proxy. It looks
-/// `ConnectOptions::name` up in the Broker's local table, chooses the transport (same process or
-/// DDS), opens the session, and connects to another provider if the current one is lost.
-/// Thread-safe. connect() blocks; do not call it from a DDS listener or from a timer's action.
+/// `ConnectOptions::name` up in the Broker's local table, chooses the transport (same process,
+/// shared memory or DDS), opens the session, and connects to another provider if the current one is
+/// lost. Thread-safe. connect() blocks; do not call it from a timer's action.
 class Connector {
  public:
   struct Parts;
 
-  /// The parts must exist until close() has returned.
+  /// Used by Entity. What `parts` refers to must exist until close() has returned.
   explicit Connector(const Parts& parts);
   Connector(const Connector&) = default;  // also in place of a move: none is without its parts
   Connector& operator=(const Connector&) = delete;
@@ -158,8 +163,8 @@ class Connector {
   /// What is connected now.
   std::vector<ConnectionInfo> connections() const;
 
-  /// One connection to exactly this provider, without fail-over. Throws Unavailable if it does not
-  /// answer within `timeout`, or the error with which it refuses.
+  /// Used by Head: one connection to exactly this provider, without fail-over. Throws Unavailable
+  /// if it does not answer within `timeout`, or the error with which it refuses.
   std::shared_ptr<Channel> open_provider(const discovery::ServiceDescription& provider,
                                          const std::string& strategy, Duration timeout) const;
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <chrono>
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <span>
@@ -86,8 +88,9 @@ DynamicProxy connect_dynamic(Entity& entity, const ConnectOptions& options);
 /// a Publisher. Destroy it before its entity.
 class DynamicPublisher {
  public:
-  /// `type` is one of `known`, a struct or a union. Throws as Publisher() does, and InvalidArgument
-  /// for types that make no sense. Of `qos`, no systems are the entity's own.
+  /// `type` is one of `known`, a struct or a union. If `qos` names no systems, the topic is
+  /// published in the entity's own. Throws as Entity::publisher() does, and InvalidArgument for
+  /// types that make no sense.
   DynamicPublisher(Entity& entity, const std::string& topic, const std::string& type,
                    const types::TypeSystem& known, const TopicQos& qos);
 
@@ -115,7 +118,7 @@ class DynamicSubscription {
   /// Gets the value as CDR with its encapsulation header, as `known` describes the type.
   using CdrCallback = std::function<void(std::span<const std::byte> cdr)>;
 
-  /// As DynamicPublisher(); the callback is that of a Subscription.
+  /// Throws as DynamicPublisher() does. The callback runs as that of Entity::subscription().
   DynamicSubscription(Entity& entity, const std::string& topic, const std::string& type,
                       const types::TypeSystem& known, const TopicQos& qos, Callback callback,
                       SubscriptionOptions options = {});

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -10,8 +11,13 @@
 #include <utility>
 #include <vector>
 
+#include "skein/clock.hpp"
 #include "skein/connector.hpp"
+#include "skein/constraint.hpp"
 #include "skein/detail/circuit_breaker.hpp"
+#include "skein/detail/operation.hpp"
+#include "skein/executor.hpp"
+#include "skein/guid.hpp"
 #include "skein/process.hpp"
 #include "skein/topics.hpp"
 #include "skein/vendor.hpp"
@@ -76,7 +82,7 @@ struct EntityOptions {
   /// How the Head decides.
   HeadOptions head{};
   /// Changes what publishers and subscriptions of the topic `name` ask for. Called for each of them
-  /// on the thread that makes it; what it throws goes to who makes it.
+  /// on the thread that makes it, which an exception from it goes to.
   std::function<void(const std::string& name, TopicQos& qos)> adjust_topic{};
   /// Whether calls to and from entities of other processes on this host go through shared memory,
   /// where those do so, too; all others, and those that find no way there, go over DDS. By default
@@ -307,6 +313,7 @@ class Entity {
   }
 
   Connector& connector() noexcept;
+  /// For Skein's own tools: its header is not installed.
   brokerless_discovery::Broker& broker() noexcept;
   Head& head() noexcept;
   Clock& clock() noexcept;

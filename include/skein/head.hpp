@@ -1,5 +1,7 @@
 #pragma once
 
+#include <chrono>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -8,6 +10,9 @@
 #include "skein/detail/history.hpp"
 #include "skein/detail/task_run.hpp"
 #include "skein/entity.hpp"
+#include "skein/error.hpp"
+#include "skein/selection.hpp"
+#include "skein/task.hpp"
 
 namespace skein::rpc {
 struct OpenRequest;
@@ -39,10 +44,14 @@ class NoneAccepted : public Internal {
 /// again until it has returned. On the caller's thread a blocking call takes less than a
 /// microsecond, but the Head waits until it returns: use this only for calls that are bounded by
 /// construction.
+/// A Body has a task done, and tells a failure in its interface's words:
 ///
 /// ```cpp
-/// drone.head().add_strategy(std::make_shared<MostReliable>());
-/// auto navigator = station.connect<survey::INavigator>({.strategy = "most_reliable"});
+/// try {
+///   return head_.perform(task);
+/// } catch (const skein::NoneAccepted& refusal) {
+///   throw survey::NoTrack(refusal.what());
+/// }
 /// ```
 class Head {
  public:
@@ -54,8 +63,8 @@ class Head {
 
   struct Parts;
 
-  /// Throws InvalidArgument for an unknown strategy, for a history that cannot be read, and for a
-  /// log that cannot be written.
+  /// Used by Entity, with EntityOptions::head. Throws InvalidArgument for an unknown strategy, for
+  /// a history that cannot be read, and for a log that cannot be written.
   Head(const Parts& parts, HeadOptions options);
   /// Writes the history; logs an error if it cannot.
   ~Head();
@@ -63,7 +72,7 @@ class Head {
   /// Makes a strategy selectable by its name; see StrategyFactory::add().
   void add_strategy(std::shared_ptr<const SelectionStrategy> strategy);
 
-  /// Makes a session for a client that connects (the paper's `initialize()`). Throws
+  /// Used when a client connects: makes its session (the paper's `initialize()`). Throws
   /// InvalidArgument for an unknown strategy; the text lists the known ones.
   std::shared_ptr<Session> initialize(const rpc::OpenRequest& request) const;
 

@@ -26,8 +26,8 @@ struct Inspected {
 class Inspector {
  public:
   /// `entity` must outlive it. `gives_up` is asked ten times a second by each thread that waits for
-  /// answers: once it says so, nobody waits any more. Throws what Participant::create_writer()
-  /// throws.
+  /// answers: once it says so, nobody waits any more. Throws Internal, with the reason, if the
+  /// DDS vendor refuses what it needs.
   explicit Inspector(Entity& entity, std::function<bool()> gives_up = {});
   ~Inspector();
   Inspector(const Inspector&) = delete;

@@ -11,7 +11,12 @@
 #include "skein/clock.hpp"
 #include "skein/detail/circuit_breaker.hpp"
 #include "skein/guid.hpp"
-#include "skein/introspection.idl.hpp"
+
+namespace skein::introspection {
+enum class Outcome : std::uint32_t;
+struct Attempt;
+struct Decision;
+}  // namespace skein::introspection
 
 // The paper's Algorithm Selection pattern (Figure 7): a StrategyFactory makes the SelectionStrategy
 // that a session names; a CandidateIterator returns the CSPs in the order that the strategy
@@ -27,14 +32,15 @@ struct Feature {
 };
 using Features = std::vector<Feature>;
 
-/// A run of at least this weight is on a similar request; others are all that there is.
+/// Runs of at least this weight were on similar requests. Others are listed for lack of better
+/// ones.
 inline constexpr double kSimilar = 0.1;
 
 /// A past run.
 struct SimilarRun {
   std::uint64_t request = 0;  ///< The request's number: equal for CSPs that ran on the same one.
-  /// 0 to 1: how similar; less if it ran only since others had failed, which most requests do not
-  /// come to; 0 if the request is only there since another CSP ran on it, too.
+  /// 0 to 1: how similar the requests are. Less if the CSP ran only because others had failed, as
+  /// few requests get that far. 0 if it is listed only because another CSP ran on that request.
   double weight = 0;
   Duration took{};
   bool accepted = false;
@@ -207,7 +213,8 @@ class CandidateIterator {
   Situation situation_;
 };
 
-/// In plain words: `accepted`, `timed out`.
+/// In plain words: `accepted`, `timed out`. "skein/introspection.idl.hpp" defines this type and
+/// those of the functions that follow.
 const char* in_words(introspection::Outcome outcome) noexcept;
 
 /// Whether both chose the same for the same reasons and for as long, whatever came of it.

@@ -21,14 +21,14 @@ namespace skein {
 /// destroying it cancels the operation. One thread at a time. The deadline of the call applies to
 /// the whole stream. A stream that was moved from throws InvalidArgument.
 ///
-/// A slow reader slows the provider: the provider may be PendingStream::kWindow results ahead, then
-/// it waits. If nothing is taken for 3 s then, and other calls wait for the provider's thread, the
-/// stream ends as Overloaded.
+/// A slow reader slows the provider: the provider may be 8 results ahead (PendingStream::kWindow),
+/// then it waits. If nothing is taken for 3 s then, and other calls wait for the provider's thread,
+/// the stream ends as Overloaded.
 ///
 /// ```cpp
 /// for (const survey::Photo& photo : surveyor.within(1min).fly(kField)) {
 ///   show(photo);
-///   if (photo.along_m >= 100) break;  // the stream goes, and the provider is told
+///   if (photo.along_m >= 100) break;  // destroys the stream, which tells the provider
 /// }
 /// ```
 template <class T>
@@ -78,8 +78,9 @@ class [[nodiscard]] Stream {
   /// Whether next() would return at once.
   bool ready() const { return pending().ready(); }
 
-  /// Runs `action` when ready(): at once, or on the thread that delivers, possibly a vendor's. It
-  /// must neither block nor run user code. One action at a time, and no next_async() beside it.
+  /// Runs `action` when ready(): at once, or on the thread that delivers, possibly one of the
+  /// library's. It must neither block nor run user code. One action at a time, and no next_async()
+  /// beside it.
   void notify(std::function<void()> action) { pending().on_ready(std::move(action)); }
 
   /// Cancels the operation, unless it has ended, notifies the provider, and drops the results that

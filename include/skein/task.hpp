@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <optional>
 #include <string>
@@ -9,8 +11,11 @@
 #include <variant>
 
 #include "skein/call.hpp"
+#include "skein/clock.hpp"
+#include "skein/error.hpp"
 #include "skein/evaluation.hpp"
 #include "skein/selection.hpp"
+#include "skein/stream.hpp"
 
 namespace skein {
 

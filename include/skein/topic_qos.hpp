@@ -6,9 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "skein/detail/version.hpp"
+
 namespace skein {
 
-/// What writers and readers must agree on, and what they keep.
+/// What publishers and subscribers must agree on, and what they keep.
 struct QosPolicies {
   /// A reliable reader matches only reliable writers.
   bool reliable = true;
@@ -55,9 +57,8 @@ struct QosPolicies {
 /// values loses the oldest.
 struct TopicQos : QosPolicies {
   /// The systems (vehicles and stations) in which the topic is published or read. Empty: the
-  /// entity's own; without an entity, the default partition "". A system's name is the DDS
-  /// partition: peers without Skein use that partition, or are reached in the default one if "" is
-  /// named here.
+  /// entity's own. A system's name is the DDS partition: peers without Skein use that partition, or
+  /// are reached in the default partition if "" is named here.
   std::vector<std::string> systems{};
 
   TopicQos() {

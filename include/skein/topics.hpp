@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -10,6 +11,7 @@
 
 #include "skein/detail/topic_ends.hpp"
 #include "skein/executor.hpp"
+#include "skein/guid.hpp"
 #include "skein/topic_qos.hpp"
 
 namespace skein {
@@ -18,12 +20,13 @@ namespace skein {
 struct PublisherCounters {
   /// Values and disposals.
   std::uint64_t published = 0;
-  /// Periods in which an instance had no value; see Qos::deadline.
+  /// Periods in which an instance had no value; see TopicQos::deadline.
   std::uint64_t missed_deadlines = 0;
 };
 
-/// Publishes values of an IDL struct on a topic; made by Entity::publisher(). Thread-safe, movable:
-/// one that was moved from throws InvalidArgument. Destroy it before its entity.
+/// Publishes values of an IDL struct or union on a topic; made by Entity::publisher(). Thread-safe
+/// and movable. A publisher that was moved from throws InvalidArgument. Destroy it before its
+/// entity. See Subscription for both in use.
 template <class T>
 class [[nodiscard]] Publisher {
   static_assert(topics::kIsType<T>,
@@ -43,8 +46,9 @@ class [[nodiscard]] Publisher {
   /// Disposes the instance with this value's key. Throws as publish() does.
   void dispose(const T& value) requires Keyed<T> { topics::held(writer_).dispose(&value); }
 
-  /// Waits until all reliable subscribers that are matched now have what was published; false where
-  /// they have not by the timeout. Before a publisher goes: what they have not is lost then.
+  /// Waits until all reliable subscribers that are matched now have what was published. Returns
+  /// false if they do not have it by the timeout. Call it before you destroy a publisher: values
+  /// that subscribers have not received by then are lost.
   bool wait_for_acknowledgments(std::chrono::milliseconds timeout) {
     return topics::held(writer_).wait_for_acknowledgments(timeout);
   }

@@ -36,19 +36,20 @@ inline constexpr std::chrono::milliseconds kPatience{100};
 /// The right to take messages, which a thread has while it delivers one.
 class Turn {
  public:
-  /// What follows on this thread may take long: another thread takes what comes meanwhile. The
-  /// message's bytes are not valid any more then. False, and nothing has changed, if no other
-  /// thread can.
+  /// Call it before this thread works for long: another thread then takes the messages that come
+  /// meanwhile, and this message's bytes are no longer valid. Returns false, and changes nothing,
+  /// if no other thread can.
   virtual bool leave() = 0;
 
  protected:
   ~Turn() = default;
 };
 
-/// A value that a message has left out, as it can be read where it lies.
+/// A parameter that the sender left out of the message, as the receiver can read it in memory that
+/// they share.
 struct LentValue {
   std::span<const std::byte> value;  ///< Empty if it cannot be read here.
-  std::size_t position = 0;          ///< Where it is missing in the message.
+  std::size_t position = 0;          ///< Offset in the message at which it is missing.
   std::shared_ptr<const void> use;   ///< The value can be read while a copy of this lives.
 };
 
@@ -60,20 +61,20 @@ struct Message {
   Turn* turn = nullptr;             ///< Null: it cannot be left.
 };
 
-/// Called with the identity of a peer on the other side that is found (true) or gone (false).
-/// Matches and messages come in no promised order.
+/// Called when a peer on the other side was found (true) or has gone (false). It may be called
+/// before or after the peer's first message.
 using PeerListener = std::function<void(const Guid& peer, bool found)>;
 
-/// Called on a thread of the port's; over DDS also inside send(), if both sides are of one
-/// participant. Must return soon, and must not send, create or destroy what the port makes, or wait
-/// for a thread that does.
+/// The functions run on the port's threads; over DDS also inside send(), if both sides belong to
+/// one participant. They must return soon, and must not send, create or destroy what the port
+/// makes, or wait for a thread that does.
 struct Listener {
   std::function<void(const Message&)> on_message;
   PeerListener on_peer{};
 };
 
-/// Delivery on the thread that waits for a message, in place of the port's own thread: a wake-up
-/// less. It may outlive its receiver, and delivers nothing then. Thread-safe.
+/// Lets the thread that waits for a message take it itself, which saves the wake-up of the port's
+/// thread. It may outlive its receiver; then it delivers nothing. Thread-safe.
 class CallerDelivery {
  public:
   virtual ~CallerDelivery() = default;
@@ -84,10 +85,11 @@ class CallerDelivery {
   virtual void pause() = 0;
   /// The port's thread takes what comes next.
   virtual void take_back() = 0;
-  /// Calls the listener on this thread as messages come, until `over`, which wake() makes it look
-  /// at. Returns earlier, after take_back(), if another thread is in it, or one of the two sides
-  /// has ended.
+  /// Calls the listener on this thread as messages come, until `over()` is true. It checks that
+  /// after each message and after wake(). Returns earlier, after take_back(), if another thread is
+  /// already in it, or if one of the two sides has ended.
   virtual void deliver_until(const std::function<bool()>& over) = 0;
+  /// From any thread.
   virtual void wake() = 0;
 };
 
@@ -105,10 +107,11 @@ class Receiver {
 class Sender {
  public:
   virtual ~Sender() = default;
-  /// Sends a message that is worth nothing after `left`, which is asked for only if there is no
-  /// room at first. Throws InvalidArgument if it is larger than what receivers take, Overloaded if
-  /// there was no room in time, Unavailable if the other side of a client's connection has gone,
-  /// Internal with the reason otherwise.
+  /// Sends a message. `left` tells for how long it is still worth sending: a sender calls it only
+  /// if it finds no room at first; one over DDS ignores it, and waits for kPatience. Throws
+  /// InvalidArgument if the message is larger than receivers take, Overloaded if there was no room
+  /// in time, Unavailable if the other side of a client's connection has gone, otherwise Internal
+  /// with the reason.
   virtual void send(std::span<const std::byte> message,
                     const std::function<Duration()>& left = {}) = 0;
   /// Sends a message that has left out `value` at `position`; throws as send(). Returns false, and
@@ -120,7 +123,7 @@ class Sender {
   virtual Guid identity() const = 0;
 };
 
-/// What a provider does. Outlives what it makes. Thread-safe.
+/// The provider's side of the port. It must outlive what it makes. Thread-safe.
 class ProviderPort {
  public:
   virtual ~ProviderPort() = default;
@@ -133,7 +136,7 @@ class ProviderPort {
                                                PeerListener on_peer = {}) = 0;
 };
 
-/// What a client does. Outlives what it makes. Thread-safe.
+/// The client's side of the port. It must outlive what it makes. Thread-safe.
 class ClientPort {
  public:
   virtual ~ClientPort() = default;

@@ -16,9 +16,6 @@ dds::Topic topic_of(const std::string& service, const char* suffix) {
   return {name + suffix, type + suffix, false};
 }
 
-// The default partition has no name.
-std::string partition_of(const Guid& peer) { return peer.is_nil() ? std::string() : peer.hex(); }
-
 dds::Qos qos_of(const Address& address, std::vector<std::string> partitions) {
   dds::Qos qos;
   if (is_xcdr2(address.representation)) qos.representation = dds::DataRepresentation::Xcdr2;
@@ -77,6 +74,7 @@ class DdsSender final : public Sender {
 
 dds::Topic request_topic(const Address& address) { return topic_of(address.service, "_Request"); }
 dds::Topic reply_topic(const Address& address) { return topic_of(address.service, "_Reply"); }
+std::string partition_of(const Guid& peer) { return peer.is_nil() ? std::string() : peer.hex(); }
 
 std::unique_ptr<Receiver> DdsCallPort::receive_requests(const Address& address, bool foreign,
                                                         Listener listener) {

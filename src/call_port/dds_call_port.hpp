@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "call_port.hpp"
 #include "dds/port/port.hpp"
 
@@ -8,6 +10,8 @@ namespace skein::calls {
 /// DDS-RPC's topics of an interface, which peers that are not built with Skein use, too.
 dds::Topic request_topic(const Address& address);
 dds::Topic reply_topic(const Address& address);
+/// The partition in which a peer receives; nil: the default one, of peers without Skein.
+std::string partition_of(const Guid& peer);
 
 /// Calls over DDS. A provider receives in the partition that its identity names, a client in a
 /// partition of its own; peers that are not built with Skein use the default partition.

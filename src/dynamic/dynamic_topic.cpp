@@ -3,10 +3,10 @@
 #include <mutex>
 #include <utility>
 
+#include "entity/entity_access.hpp"
 #include "idl/types/dynamic_codec.hpp"
 #include "idl/types/dynamic_support.hpp"
 #include "skein/detail/codec.hpp"
-#include "skein/detail/entity_access.hpp"
 #include "skein/dynamic.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"

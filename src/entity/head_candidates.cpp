@@ -223,9 +223,9 @@ void Head::State::refuse_without(const InterfaceInfo& interface, const std::stri
                     " a CSP for it, by provide_csp() or by <csp> in the mission profile");
 }
 
-History::Decisions Head::State::count_request(const InterfaceInfo& interface) {
+PastDecisions Head::State::count_request(const InterfaceInfo& interface) {
   std::lock_guard lock(mutex);
-  const History::Decisions before = history.decisions(interface.name);
+  const PastDecisions before = history.decisions(interface.name);
   history.begin(interface.name);
   return before;
 }

@@ -45,7 +45,7 @@ struct Head::State {
   /// Throws NoCandidate: there is none.
   [[noreturn]] void refuse_without(const InterfaceInfo& interface, const std::string& only);
   /// A request has come: how many there were before, which is its number less 1.
-  History::Decisions count_request(const InterfaceInfo& interface);
+  PastDecisions count_request(const InterfaceInfo& interface);
   /// Waits no longer than `patience` for a new connection; `now` is the time when it stands.
   std::shared_ptr<Channel> channel_to(const Candidate& candidate, Duration patience, Instant& now);
 

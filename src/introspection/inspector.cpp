@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "entity/asker.hpp"
-#include "skein/detail/entity_access.hpp"
+#include "entity/entity_access.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/log.hpp"
+#include "entity/entity_access.hpp"
 #include "introspection/topic_witness.hpp"
 #include "recording/mcap/format.hpp"
 #include "recording/recorded_calls.hpp"
@@ -16,7 +17,6 @@
 #include "recording/recording_time.hpp"
 #include "rpc/service/introspection_topic.hpp"
 #include "skein/describe.hpp"
-#include "skein/detail/entity_access.hpp"
 #include "skein/detail/json.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"

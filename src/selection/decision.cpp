@@ -2,6 +2,7 @@
 
 #include "decision_record.hpp"
 #include "skein/error.hpp"
+#include "skein/introspection.idl.hpp"
 #include "skein/selection.hpp"
 #include "wire_values.hpp"
 

@@ -2,6 +2,7 @@
 
 #include "core/printable.hpp"
 #include "selection_text.hpp"
+#include "skein/introspection.idl.hpp"
 #include "skein/selection.hpp"
 #include "wire_values.hpp"
 

@@ -54,9 +54,9 @@ void History::note_exploration(std::string_view interface) {
   ++service(interface).decisions.explored;
 }
 
-History::Decisions History::decisions(std::string_view interface) const {
+PastDecisions History::decisions(std::string_view interface) const {
   const ServiceHistory* const found = find(interface);
-  return found ? found->decisions : Decisions();
+  return found ? found->decisions : PastDecisions();
 }
 
 void History::add(std::string_view interface, std::string_view csp, Sample sample,

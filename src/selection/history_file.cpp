@@ -60,7 +60,7 @@ std::string History::to_json() const {
                      record.drift.faster_since};
       for (const Sample& sample : record.samples) csp.runs.push_back(run_of(sample));
     }
-    const Decisions& decisions = service->decisions;
+    const PastDecisions& decisions = service->decisions;
     experience.decisions.push_back({interface, decisions.made, decisions.explored});
   }
   return idl::to_json(experience);

@@ -65,7 +65,7 @@ class Experience {
 /// What the CSPs of one interface made of past requests.
 class ServiceHistory {
  public:
-  History::Decisions decisions;
+  PastDecisions decisions;
 
   void add(std::string_view csp, History::Sample sample, const Prediction* predicted);
   std::vector<std::optional<Prediction>> predict(const std::vector<std::string_view>& csps,

@@ -53,7 +53,6 @@ DETAIL_HEADERS = {
            " service_reference type_support union_access unknown_operation wide_text",
     "dds/port": "qos",
     "topics": "topic_ends topic_type",
-    "entity": "entity_access",
     "selection": "circuit_breaker history task_run",
 }
 _FLOOR_OF_HEADER = {

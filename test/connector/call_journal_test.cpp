@@ -4,9 +4,9 @@
 #include <catch2/catch.hpp>
 
 #include "echo_pair.hpp"
+#include "entity/entity_access.hpp"
 #include "pairing.hpp"
 #include "skein/detail/codec.hpp"
-#include "skein/detail/entity_access.hpp"
 #include "skein/introspection.idl.hpp"
 #include "test/tools/eventually.hpp"
 #include "test/tools/log.hpp"

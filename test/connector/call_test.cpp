@@ -3,9 +3,9 @@
 
 #include "call_port/dds_call_port.hpp"
 #include "echo_pair.hpp"
+#include "entity/entity_access.hpp"
 #include "pairing.hpp"
 #include "rpc/client/remote_channel.hpp"
-#include "skein/detail/entity_access.hpp"
 #include "test/tools/eventually.hpp"
 #include "test/tools/invariant.hpp"
 #include "test/tools/log.hpp"

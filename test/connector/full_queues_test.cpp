@@ -3,10 +3,10 @@
 
 #include "call_port/dds_call_port.hpp"
 #include "echo_service.hpp"
+#include "entity/entity_access.hpp"
 #include "pairing.hpp"
 #include "rpc/client/remote_channel.hpp"
 #include "rpc/server/remote_server.hpp"
-#include "skein/detail/entity_access.hpp"
 #include "test/tools/eventually.hpp"
 
 using namespace skein;

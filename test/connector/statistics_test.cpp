@@ -2,10 +2,10 @@
 
 #include "brokerless_discovery/broker.hpp"
 #include "echo_pair.hpp"
+#include "entity/entity_access.hpp"
 #include "entity/statistics_topic.hpp"
 #include "pairing.hpp"
 #include "skein/detail/codec.hpp"
-#include "skein/detail/entity_access.hpp"
 #include "skein/introspection.idl.hpp"
 #include "test/tools/eventually.hpp"
 

@@ -3,9 +3,9 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include "entity/entity_access.hpp"
 #include "entity/inspection_topic.hpp"
 #include "skein/describe.hpp"
-#include "skein/detail/entity_access.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
 #include "skein/inspector.hpp"

@@ -10,9 +10,9 @@
 #include <mutex>
 
 #include "entity/decision_log.hpp"
+#include "entity/entity_access.hpp"
 #include "office.hpp"
 #include "rpc/service/introspection_topic.hpp"
-#include "skein/detail/entity_access.hpp"
 #include "skein/detail/type_support.hpp"
 #include "skein/introspection.idl.hpp"
 #include "test/tools/log.hpp"

@@ -8,8 +8,8 @@
 
 #include "brokerless_discovery/broker.hpp"
 #include "call_port/dds_call_port.hpp"
+#include "entity/entity_access.hpp"
 #include "rpc/server/remote_server.hpp"
-#include "skein/detail/entity_access.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"
 #include "test/connector/echo_service.hpp"

@@ -117,7 +117,7 @@ TEST_CASE("a stream is read one result after the other, and dropped when enough 
 
   for (const survey::Photo& photo : surveyor.within(1min).fly(kField)) {
     show(photo);
-    if (photo.along_m >= 100) break;  // the stream goes, and the provider is told
+    if (photo.along_m >= 100) break;  // destroys the stream, which tells the provider
   }
   CHECK(seen == 11);
 
@@ -147,8 +147,8 @@ TEST_CASE("calls can be under way at once") {
 
   auto first = surveyor.async_minutes(kField);  // returns at once
   auto second = surveyor.async_minutes(kField);
-  const double both = first.get() + second.get();
-  CHECK(both == 48);
+  const double total_minutes = first.get() + second.get();
+  CHECK(total_minutes == 48);
 
   std::promise<double> done;
   surveyor.async_minutes(kField).then([&](skein::Call<double> call) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "entity/entity_access.hpp"
 #include "entity/inspection_topic.hpp"
 #include "recording/mcap/reader.hpp"
 #include "recording/player.hpp"
@@ -13,7 +14,6 @@
 #include "recording/recorded_types.hpp"
 #include "skein/describe.hpp"
 #include "skein/detail/codec.hpp"
-#include "skein/detail/entity_access.hpp"
 #include "skein/dynamic.hpp"
 #include "skein/entity.hpp"
 #include "skein/error.hpp"

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "convert.hpp"
+#include "skein/introspection.idl.hpp"
 #include "skein/selection.hpp"
 #include "stream.hpp"
 #include "topics.hpp"

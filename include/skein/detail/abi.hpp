@@ -7,7 +7,7 @@
 /// Number of libskein's binary interface. It grows whenever a class or function that modules and
 /// plugins use changes its layout or meaning. A module that was built for another number is
 /// refused.
-#define SKEIN_ABI 23
+#define SKEIN_ABI 24
 
 namespace skein {
 

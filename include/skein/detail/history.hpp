@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -47,7 +47,6 @@ class History {
     std::uint32_t after = 0;        ///< How many CSPs had failed at this request before.
     bool operator==(const Sample& other) const;
   };
-  using Decisions = PastDecisions;
 
   static constexpr std::size_t kKept = 1000;
   static constexpr std::size_t kNeighbours = 16;
@@ -62,7 +61,7 @@ class History {
   /// A request has come; the number of the first is 1.
   std::uint64_t begin(std::string_view interface);
   void note_exploration(std::string_view interface);
-  Decisions decisions(std::string_view interface) const;
+  PastDecisions decisions(std::string_view interface) const;
 
   /// `predicted` is what was predicted for this run, to be compared with it; null if nothing was.
   void add(std::string_view interface, std::string_view csp, Sample sample,

@@ -2,13 +2,16 @@
 
 #include <cmath>
 #include <exception>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "skein/detail/channel.hpp"
 #include "skein/error.hpp"
+#include "skein/introspection.idl.hpp"
 #include "skein/selection.hpp"
 #include "skein/task.hpp"
 

@@ -10,6 +10,7 @@
 
 #include "skein/detail/topic_type.hpp"
 #include "skein/executor.hpp"
+#include "skein/guid.hpp"
 #include "skein/topic_qos.hpp"
 
 namespace skein::dds {

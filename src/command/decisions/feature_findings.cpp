@@ -8,6 +8,7 @@
 #include <span>
 
 #include "core/printable.hpp"
+#include "skein/introspection.idl.hpp"
 #include "skein/selection.hpp"
 
 namespace skein::command {

@@ -9,6 +9,7 @@
 #include "core/log.hpp"
 #include "core/printable.hpp"
 #include "skein/discovery.idl.hpp"
+#include "skein/introspection.idl.hpp"
 #include "skein/selection.hpp"
 
 namespace skein::command::designer {

@@ -11,9 +11,9 @@
 #include "command/print/local_time.hpp"
 #include "command/print/wrapped.hpp"
 #include "core/printable.hpp"
+#include "entity/entity_access.hpp"
 #include "rpc/service/introspection_topic.hpp"
 #include "service_names.hpp"
-#include "skein/detail/entity_access.hpp"
 #include "skein/entity.hpp"
 #include "skein/introspection.idl.hpp"
 

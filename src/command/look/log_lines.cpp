@@ -17,9 +17,9 @@
 #include "core/log.hpp"
 #include "core/printable.hpp"
 #include "core/suggestion.hpp"
+#include "entity/entity_access.hpp"
 #include "rpc/service/introspection_topic.hpp"
 #include "service_names.hpp"
-#include "skein/detail/entity_access.hpp"
 #include "skein/entity.hpp"
 #include "skein/introspection.idl.hpp"
 

@@ -9,8 +9,8 @@
 
 #include "command/commands.hpp"
 #include "command/print/wrapped.hpp"
+#include "entity/entity_access.hpp"
 #include "introspection/topic_tap.hpp"
-#include "skein/detail/entity_access.hpp"
 #include "skein/entity.hpp"
 #include "topic_survey.hpp"
 

@@ -30,7 +30,7 @@ class CallerAnswers final : public Answers {
     expect();
     delivery_->deliver_until([&finished] { return finished.load(); });
     taken_ = false;
-    // Who has more calls under way mostly waits for the next one soon.
+    // A thread with more calls under way usually waits for the next answer soon.
     calls_ == 0 ? delivery_->take_back() : delivery_->pause();
   }
   void wake() override { delivery_->wake(); }

@@ -26,18 +26,18 @@ class PendingCalls : public std::enable_shared_from_this<PendingCalls> {
   PendingCalls(Clock& clock, std::size_t most, std::function<void(std::uint64_t)> on_due)
       : clock_(clock), most_(most), on_due_(std::move(on_due)) {}
 
-  /// Returns the call's number, from 1; 0 if there is no room, nothing once closed.
+  /// Returns the call's number, 1 or more; 0 if there is no room; nullopt after close().
   std::optional<std::uint64_t> add(const Call& call);
   struct Removed {
     Call call;
     bool last = false;  ///< No other call waits.
   };
-  /// Returns the call, which is not known by its number any more; null if it is not. A stream stays
-  /// known, if they are kept.
+  /// Forgets the call's number and returns the call; null if the number is unknown. With
+  /// Keep::Streams a stream's number stays known.
   Removed remove(std::uint64_t number, Keep keep = Keep::Nothing);
   /// Takes no call from now on. Returns those that waited.
   All close();
-  /// The same, unless a call waits; then returns false.
+  /// As close(), but only if no call waits; otherwise returns false.
   bool close_if_empty();
 
   std::size_t size() const;

@@ -15,7 +15,8 @@ class RefusedReplies {
   RefusedReplies(std::string service, std::string peer)
       : service_(std::move(service)), peer_(std::move(peer)) {}
 
-  /// Its count of malformed messages is told, too; until another one is watched, or null.
+  /// what_came_malformed() also counts the malformed messages of this receiver. Call watch(nullptr)
+  /// before you destroy it.
   void watch(const calls::Receiver* receiver);
   void note_malformed(const std::string& why);
   void note_forged(const Guid& sender);

@@ -40,16 +40,17 @@ class RemoteCalls : public std::enable_shared_from_this<RemoteCalls> {
   static std::shared_ptr<RemoteCalls> make(Parts parts);
 
   PendingCalls& pending() noexcept { return *pending_; }
-  /// Before calls: by which callers take their own answers, as long as it exists.
+  /// Call it before start(). Callers then take their own answers through `answers`, which this
+  /// object does not keep alive.
   void set_answers(const std::shared_ptr<CallerAnswers>& answers) { answers_ = answers; }
   /// The port's thread takes what comes, until a caller waits again.
   void hand_over() const;
 
-  /// Sends a call's request. Returns false, with the call as it was, if none is taken any more.
-  /// Throws Overloaded if too many calls wait already; all other errors end the call.
+  /// Sends a call's request. Returns false, and leaves the call as it was, if none is taken any
+  /// more. Throws Overloaded if too many calls wait already; all other errors end the call.
   bool start(const std::shared_ptr<PendingCall>& call, const void* in);
   void on_reply(std::span<const std::byte> message, const wire::ReplyHead& head);
-  /// A reply of which nothing can be read but, perhaps, whose call it answers.
+  /// A reply that cannot be read, except perhaps for the call that it answers.
   void on_unreadable(std::span<const std::byte> message, const std::exception& why);
   /// Ends all calls, and takes none from now on.
   void fail_all(const std::function<std::exception_ptr(const OperationInfo&)>& make_error);

@@ -221,7 +221,7 @@ void RemoteChannel::State::part_later() {
 // The endpoints go here, and with them the session, once no call is on its way, a oneway one
 // either: the provider waits for that.
 void RemoteChannel::State::part() {
-  if (phase == Phase::Open && !path->await_taken()) {
+  if (phase == Phase::Open && !path->all_taken()) {
     clock.call_after(kPartInterval, [state = weak_from_this()] {
       const auto self = state.lock();
       if (!self) return;

@@ -20,7 +20,7 @@ class RemoteChannel final : public Channel, public std::enable_shared_from_this<
     std::string peer;               ///< For messages.
     std::string transport = "DDS";  ///< See ConnectionInfo, as the next.
     std::string not_faster{};
-    /// What is said of a provider whose endpoint is gone, as long as nobody knows more.
+    /// The text for a provider whose endpoint is gone, until a better reason is known.
     std::string gone = "it left, or it was not heard of for longer than its lease";
     /// The provider's participant, which alone is believed. Nil: whoever serves the address is.
     Guid participant;
@@ -30,10 +30,11 @@ class RemoteChannel final : public Channel, public std::enable_shared_from_this<
     /// Calls that may wait for their answers; beyond it a call is refused as Overloaded, unsent.
     std::size_t calls_in_flight = 4096;
     std::shared_ptr<CallJournal> journal;  ///< May be null.
-    /// Asked while opening: whether the provider still stands, as far as is known; what it throws
-    /// ends the attempt. Empty: it does.
+    /// Asked while opening: whether the provider is still known to exist. An exception from it ends
+    /// the attempt. Empty: it exists.
     std::function<bool()> stands;
-    /// Given the channel before the provider has answered: who ends it then ends the attempt.
+    /// Called with the channel before the provider has answered: ending the channel then ends the
+    /// attempt.
     std::function<void(const std::shared_ptr<RemoteChannel>&)> begun;
   };
 

@@ -45,7 +45,7 @@ std::shared_ptr<calls::Sender> RequestPath::sender() const {
   return sender_;
 }
 
-bool RequestPath::await_taken() const {
+bool RequestPath::all_taken() const {
   const auto sender = this->sender();
   return !sender || sender->await_taken(std::chrono::milliseconds(0));
 }

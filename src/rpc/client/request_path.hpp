@@ -21,7 +21,7 @@ class RequestPath {
   RequestPath(calls::Address address, Clock& clock, std::string peer,
               std::shared_ptr<CallJournal> journal);
 
-  /// Before requests are sent.
+  /// Call it once, before send().
   void open(std::unique_ptr<calls::Sender> sender);
   /// Requests do not wait for room any more.
   void give_up() noexcept { given_up_ = true; }
@@ -33,8 +33,8 @@ class RequestPath {
   /// The client's identity.
   const Guid& client() const noexcept { return client_; }
   const calls::Address& address() const noexcept { return address_; }
-  /// Returns whether the provider has taken all.
-  bool await_taken() const;
+  /// Whether the provider has taken everything; does not wait.
+  bool all_taken() const;
 
   /// Sends the request of a call; returns false, and sends nothing, if the call has ended. Throws
   /// as Sender::send() does, Unavailable once closed, TimedOut if the deadline is over.

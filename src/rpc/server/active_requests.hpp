@@ -17,7 +17,7 @@ class ActiveRequests {
   using RequestId = wire::RequestId;
 
   void add(const RequestId& id, const std::shared_ptr<Invocation>& invocation);
-  /// Unless it is another call that has this number, too.
+  /// Does nothing if another call has this number now.
   void remove(const RequestId& id, const Invocation& call);
   /// Null if there is none.
   std::shared_ptr<Invocation> find(const RequestId& id) const;

@@ -9,7 +9,7 @@
 
 namespace skein::rpc {
 
-/// Looks at newcomers on `control`, one a task, so that what else waits for it has its turn, too.
+/// Admits newcomers on `control`, one in each task, so that other tasks get their turn.
 /// Thread-safe.
 class Admissions : public std::enable_shared_from_this<Admissions> {
  public:
@@ -17,8 +17,8 @@ class Admissions : public std::enable_shared_from_this<Admissions> {
 
   explicit Admissions(Executor& control) : control_(control) {}
 
-  /// Calls `admit` on `control`, unless the newcomer leaves before; the same function for all.
-  /// Returns false if there is no room. What is not taken here is repeated by its sender.
+  /// Calls `admit` on `control`, unless the newcomer leaves first. Pass the same function each
+  /// time. Returns false if there is no room; the client then asks again.
   bool add(Newcomer newcomer, const Admit& admit);
   void note_left(const Guid& client);
 

@@ -10,26 +10,27 @@
 
 namespace skein::rpc {
 
-/// A client that `control` is to look at.
+/// A client that waits for admission, which runs on `control`.
 struct Newcomer {
   wire::RequestId id;
   bool opens = false;  ///< Otherwise it called without a session.
   std::string strategy{};
   TransitDelay transit{};
-  bool left = false;  ///< Meanwhile.
+  bool left = false;  ///< While it waited.
 };
 
-/// The clients that wait for that. Peers (participants) take turns, and each has but so much room,
-/// so that none that opens thousands of sessions keeps others from opening one. Not thread-safe.
+/// The clients that wait for admission. Peers (participants) take turns, and the places of each are
+/// limited, so a peer that opens thousands of sessions cannot keep others out. Not thread-safe.
 class Newcomers {
  public:
   static constexpr std::size_t kRoom = 1024;
   static constexpr std::size_t kRoomOfPeer = 64;
 
-  /// False where there is no room. Who waits already is not put in again.
+  /// Returns false if there is no room. A client that waits already keeps its place; the newer
+  /// request replaces the older if it opens a session, or if the client had left.
   bool push(Newcomer newcomer);
 
-  /// Who waits no longer; it keeps its place, and is marked.
+  /// Marks a client that left; it keeps its place in the line.
   void note_left(const Guid& client);
 
   std::optional<Newcomer> pop();

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <chrono>
+#include <cstdint>
+#include <functional>
 #include <memory>
 
 #include "call_port/call_port.hpp"
@@ -48,12 +51,13 @@ class RemoteServer {
 
   Counters counters() const;
 
-  /// By which a thread that waits for requests takes them; see calls::Receiver.
+  /// Lets a thread that waits for requests take them itself; null if only the port's threads
+  /// deliver.
   std::shared_ptr<calls::CallerDelivery> delivery() const;
 
-  /// The service is about to end, and its clients have been told: requests of foreign ones, who do
-  /// not hear of it, are refused. Waits until no client is connected and no request waits or runs;
-  /// false at the deadline.
+  /// Call it when the service is about to end and its clients have been told. Refuses requests of
+  /// foreign clients, which cannot be told. Waits until no client is connected and no request waits
+  /// or runs; returns false at the deadline.
   bool await_clients_gone(Instant deadline);
 
  private:

@@ -11,6 +11,8 @@
 
 #include "call_port/call_port.hpp"
 #include "rpc/wire/wire.hpp"
+#include "skein/clock.hpp"
+#include "skein/detail/bytes.hpp"
 #include "skein/error.hpp"
 #include "skein/executor.hpp"
 
@@ -30,10 +32,10 @@ struct ReplyContext {
   std::atomic<std::uint64_t> lost{0};  ///< Replies.
 };
 
-/// The way of a server's replies to one client. A reply that finds no room is kept, and those after
-/// it behind it, so that a client that reads nothing holds up a thread once, and not with each
-/// reply; `control` sends them within their calls' deadlines. Refusals leave from `control`, too,
-/// since a port's threads must not send. Thread-safe.
+/// Sends a server's replies to one client. If a reply finds no room, the path keeps it and all
+/// later ones, so a client that reads nothing blocks a thread once, not at each reply; `control`
+/// sends them within their calls' deadlines. Refusals leave from `control`, too, since a port's
+/// threads must not send. Thread-safe.
 class ReplyPath : public std::enable_shared_from_this<ReplyPath> {
  public:
   /// The context exists while a function of the path is called.

@@ -19,7 +19,7 @@ void Service::submit(const std::shared_ptr<Invocation>& invocation,
   if (invocation->operation->stream) stream_submitted_ = true;
   std::optional<CallerTurns::Turn> turn;
   if (may_run && runs_on_arrival(*invocation->operation)) {
-    turn.emplace(caller_turns(), Instant::min());  // who would have to wait for it queues
+    turn.emplace(caller_turns_.get(), Instant::min());  // who would have to wait for it queues
   }
   bool here = false;
   try {
@@ -73,7 +73,7 @@ void Service::execute_next() {
 }
 
 void Service::execute(const std::shared_ptr<Invocation>& invocation) {
-  const CallerTurns::Turn turn(caller_turns(), invocation->deadline);
+  const CallerTurns::Turn turn(caller_turns_.get(), invocation->deadline);
   execute_in_turn(invocation, turn.came(), clock_.now());
 }
 
@@ -85,7 +85,7 @@ void Service::call_here(const OperationInfo& operation, const void* in, void* ou
   try {
     begin_here(meter, frame);
     const Instant arrived = frame.begun;
-    const CallerTurns::Turn turn(caller_turns(), frame.deadline);
+    const CallerTurns::Turn turn(caller_turns_.get(), frame.deadline);
     if (turn.waited()) {
       frame.begun = clock_.now();
       meter.waited.record(frame.begun - arrived);

@@ -144,9 +144,10 @@ Service::Service(std::shared_ptr<Servant> servant, Executor& executor, Clock& cl
       clock_(clock),
       options_(std::move(options)),
       meter_(servant_->interface_info()),
-      queue_(options_.queue) {
+      queue_(options_.queue),
+      caller_turns_(options_.thread == CallThread::Caller ? std::make_unique<CallerTurns>(clock)
+                                                          : nullptr) {
   if (options_.strand.is_nil()) options_.strand = options_.id;
-  if (options_.thread == CallThread::Caller) caller_turns_.emplace(clock);
   if (options_.thread == CallThread::Caller && options_.threads > 1) {
     throw InvalidArgument(std::string(interface_info().name) +
                           " is to run on its callers' threads, "

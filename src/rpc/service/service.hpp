@@ -5,7 +5,6 @@
 #include <functional>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <unordered_map>
 #include <unordered_set>
@@ -182,7 +181,6 @@ class Service : public std::enable_shared_from_this<Service> {
   class Deferred;
   class Running;
   std::size_t count_overdue() const;
-  CallerTurns* caller_turns() noexcept { return caller_turns_ ? &*caller_turns_ : nullptr; }
   void enqueue(std::shared_ptr<Invocation> invocation);
   void execute_next();
   std::shared_ptr<Invocation> take_next();
@@ -229,8 +227,8 @@ class Service : public std::enable_shared_from_this<Service> {
   ServiceMeter meter_;
   mutable std::mutex queue_mutex_;
   FairQueue queue_;
-  std::optional<CallerTurns> caller_turns_;   // with CallThread::Caller
-  std::atomic<bool> latest_was_long_{false};  // of those that are no streams
+  const std::unique_ptr<CallerTurns> caller_turns_;  // with CallThread::Caller
+  std::atomic<bool> latest_was_long_{false};         // of those that are no streams
   std::atomic<bool> stream_submitted_{false};
   mutable std::mutex mutex_;
   mutable std::condition_variable less_to_do_;  // once it is leaving

@@ -5,8 +5,8 @@
 #include <thread>
 
 #include "call_port/dds_call_port.hpp"
+#include "entity/entity_access.hpp"
 #include "rpc/client/remote_channel.hpp"
-#include "skein/detail/entity_access.hpp"
 #include "skein/detail/type_support.hpp"
 #include "test/faults/exposed_service.hpp"
 #include "test/faults/messages.hpp"

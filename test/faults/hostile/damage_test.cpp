@@ -2,7 +2,7 @@
 #include <future>
 #include <mutex>
 
-#include "skein/detail/entity_access.hpp"
+#include "entity/entity_access.hpp"
 #include "test/faults/exposed_service.hpp"
 #include "test/faults/messages.hpp"
 #include "test/faults/processes.hpp"
@@ -25,7 +25,7 @@ class HandClient {
  public:
   HandClient(dds::Participant& participant, const calls::Address& address) {
     dds::Qos qos;
-    qos.partitions = {address.provider.hex()};
+    qos.partitions = {calls::partition_of(address.provider)};
     writer_ = participant.create_writer(calls::request_topic(address), qos);
     qos.partitions = {guid().hex()};
     dds::ReaderListener listener;
@@ -83,7 +83,7 @@ class Opener {
   Opener(dds::Participant& participant, const calls::Address& address, MakeAnswer make)
       : participant_(participant), address_(address), make_(std::move(make)) {
     dds::Qos qos;
-    qos.partitions = {address.provider.hex()};
+    qos.partitions = {calls::partition_of(address.provider)};
     dds::ReaderListener listener;
     listener.on_data = [this](dds::Reader& reader) {
       reader.take([this](const dds::Sample& sample) {

@@ -2,8 +2,8 @@
 #include <catch2/catch.hpp>
 #include <thread>
 
+#include "entity/entity_access.hpp"
 #include "rpc/server/sessions.hpp"
-#include "skein/detail/entity_access.hpp"
 #include "test/faults/exposed_service.hpp"
 #include "test/faults/messages.hpp"
 #include "test/faults/processes.hpp"
@@ -26,7 +26,7 @@ class Flood {
  public:
   Flood(Entity& entity, const calls::Address& address) {
     dds::Qos qos;
-    qos.partitions = {address.provider.hex()};
+    qos.partitions = {calls::partition_of(address.provider)};
     for (std::size_t i = 0; i < size_of_flood(); ++i) {
       writers_.push_back(
           EntityAccess::participant(entity).create_writer(calls::request_topic(address), qos));

@@ -4,8 +4,8 @@
 #include <future>
 #include <mutex>
 
+#include "entity/entity_access.hpp"
 #include "rpc/client/remote_channel.hpp"
-#include "skein/detail/entity_access.hpp"
 #include "test/faults/exposed_service.hpp"
 #include "test/faults/messages.hpp"
 #include "test/faults/processes.hpp"

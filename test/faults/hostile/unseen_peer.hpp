@@ -19,7 +19,7 @@ class Ear {
  public:
   Ear(dds::Participant& participant, const calls::Address& address) {
     dds::Qos qos;
-    qos.partitions = {address.provider.hex()};
+    qos.partitions = {calls::partition_of(address.provider)};
     dds::ReaderListener listener;
     listener.on_data = [this](dds::Reader& reader) {
       reader.take([this](const dds::Sample& sample) {

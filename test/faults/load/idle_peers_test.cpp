@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "call_port/dds_call_port.hpp"
-#include "skein/detail/entity_access.hpp"
+#include "entity/entity_access.hpp"
 #include "test/faults/messages.hpp"
 #include "test/faults/processes.hpp"
 #include "test/tools/network_space.hpp"

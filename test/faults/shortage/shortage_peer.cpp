@@ -14,8 +14,8 @@
 #include <string>
 
 #include "dds/port/port.hpp"
+#include "entity/entity_access.hpp"
 #include "lone_entity.hpp"
-#include "skein/detail/entity_access.hpp"
 #include "skein/error.hpp"
 #include "test/connector/echo_service.hpp"
 

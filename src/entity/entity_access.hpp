@@ -8,7 +8,7 @@
 
 namespace skein {
 
-/// What the library and its tools use of an entity, beside what its users do.
+/// What Skein's own libraries and tools need of an entity, beyond what users may.
 struct EntityAccess {
   static dds::Participant& participant(Entity& entity) noexcept;
   /// As Entity::publisher() and subscription(), of a type that is known at run time alone.
