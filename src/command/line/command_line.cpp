@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <list>
 #include <sstream>
 
 #include "command/print/wrapped.hpp"
@@ -19,34 +18,6 @@
 namespace skein::command {
 namespace {
 
-const launch::ExitCode& looking_code(std::string_view code) {
-  return *std::ranges::find(kLookingExitCodes, code, &launch::ExitCode::code);
-}
-
-/// Of all commands: those of a launch are the same for the others, as far as they concern them.
-std::string exit_codes() {
-  std::vector<launch::ExitCode> codes{
-      {"0", "done; of a mission: its own code 0"},
-      {"1, 2",
-       "what doctor, call, echo, info, param set or decisions --replay found: see their help"},
-      {"other", "of launch: the code with which the mission's peer ended"}};
-  // The first two are what was said above; the last is not of a launch alone.
-  for (const launch::ExitCode& code : std::span(launch::kExitCodes).subspan(2)) {
-    if (code.code == "70") codes.push_back(looking_code("69"));
-    if (code.code == "128 + N") codes.push_back(looking_code("124"));
-    codes.push_back(code);
-  }
-  // Of a launch and of commands that look these mean two things.
-  std::list<std::string> meanings;
-  for (const std::string_view code : {"71", "74"}) {
-    const auto entry = std::ranges::find(codes, code, &launch::ExitCode::code);
-    entry->meaning = meanings.emplace_back(std::string(entry->meaning) + "; of other commands: " +
-                                           std::string(looking_code(code).meaning));
-  }
-  codes.back().meaning = "interrupted by signal N before it was done";
-  return exit_codes_text(codes);
-}
-
 std::string examples_text(const std::vector<Example>& examples) {
   std::string text = "Examples:\n";
   for (const Example& example : examples)
@@ -56,19 +27,24 @@ std::string examples_text(const std::vector<Example>& examples) {
 
 }  // namespace
 
-std::string exit_codes_text(std::span<const launch::ExitCode> codes) {
+std::string exit_codes_text(const launch::CommandKind* kind) {
   constexpr std::size_t kTextColumn = 12;
   std::string text = "Exit codes:\n";
-  for (const launch::ExitCode& entry : codes) {
-    std::string line = "  " + std::string(entry.code);
+  std::string_view last;
+  for (const launch::ExitCode& entry : launch::kExitCodes) {
+    if (kind && entry.of && entry.of != kind) continue;
+    std::string line = entry.code == last ? "" : "  " + std::string(entry.code);
     line.resize(kTextColumn, ' ');
-    text += line + wrapped(entry.meaning, 80, kTextColumn) + "\n";
+    std::string meaning(entry.meaning);
+    if (!kind && entry.of) meaning = std::string(entry.of->name) + ": " + meaning;
+    text += line + wrapped(meaning, 80, kTextColumn) + "\n";
+    last = entry.code;
   }
   return text;
 }
 
-void add_exit_codes(CLI::App& command) {
-  command.footer(command.get_footer() + "\n" + exit_codes_text(kLookingExitCodes));
+void add_exit_codes(CLI::App& command, const launch::CommandKind& kind) {
+  command.footer(command.get_footer() + "\n" + exit_codes_text(&kind));
 }
 
 void make_command_line(CLI::App& app, int& result) {
@@ -89,7 +65,7 @@ void make_command_line(CLI::App& app, int& result) {
   add_measuring_commands(app, result);
   app.group("For the shell");
   add_shell_commands(app, result);
-  app.footer(exit_codes() + "\n" +
+  app.footer(exit_codes_text() + "\n" +
              examples_text({{"skein check mission.xml && skein launch mission.xml",
                              "Fly a mission if nothing is missing"},
                             {"skein services --profile mission.xml",

@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -52,11 +51,12 @@ Arguments& arguments_of(CLI::App& command, int (*function)(const Arguments&), in
   return *arguments;
 }
 
-/// The codes with their meanings, for the end of a help.
-std::string exit_codes_text(std::span<const launch::ExitCode> codes);
+/// The exit codes of that kind of command with their meanings, for the end of a help; of all
+/// commands if `kind` is null.
+std::string exit_codes_text(const launch::CommandKind* kind = nullptr);
 
-/// Those of a command that looks, at the end of its help.
-void add_exit_codes(CLI::App& command);
+/// Those of a command at the end of its help.
+void add_exit_codes(CLI::App& command, const launch::CommandKind& kind = launch::kLooking);
 
 /// The kinds of values that completion knows. Any other text may be an option's `type_name`: the
 /// unit of its value, or a word for it.

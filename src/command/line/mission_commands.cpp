@@ -1,4 +1,3 @@
-#include <array>
 
 #include "command/commands.hpp"
 #include "command_line.hpp"
@@ -69,8 +68,7 @@ void add_doctor(CLI::App& app, int& result) {
       "Find what on this machine keeps peers from speaking to each other\n\n"
       "Looks at network interfaces, firewall, UDP buffers and ports, other missions, DDS vendors, "
       "clock, shared memory and limits, and lets two peers find each other. With a "
-      "profile also at what `skein check` finds, and at which peers of the mission answer.\n\n"
-      "Exit code 0 where nothing is wrong, 1 with warnings, 2 with errors.",
+      "profile also at what `skein check` finds, and at which peers of the mission answer.",
       {{"skein doctor", "This machine, for missions that stay on it"},
        {"skein doctor --interface eth0", "For missions on a network"},
        {"skein doctor mission.xml", "For this mission, also while it flies"}});
@@ -89,6 +87,7 @@ void add_doctor(CLI::App& app, int& result) {
   add_host(command, arguments.host);
   add_variables(command, arguments.variables);
   add_json(command, arguments.json, "an object with the list `findings`");
+  add_exit_codes(command, launch::kDoctor);
 }
 
 void add_launch(CLI::App& app, int& result) {
@@ -127,7 +126,7 @@ void add_launch(CLI::App& app, int& result) {
       ->type_name("COUNT")
       ->capture_default_str()
       ->check(CLI::Validator(CLI::Range(1, 1000)).description(""));
-  command.footer(command.get_footer() + "\n" + exit_codes_text(launch::kExitCodes));
+  add_exit_codes(command, launch::kLaunch);
 }
 
 void add_peer(CLI::App& app, int& result) {
@@ -196,17 +195,10 @@ void add_new(CLI::App& app, int& result) {
 }
 
 CLI::Option* add_running(CLI::App& command, RunningArguments& arguments) {
-  constexpr std::array kCodes{
-      launch::ExitCode{"0", "done"},
-      launch::ExitCode{"64", "the command line is wrong; nothing was done"},
-      launch::ExitCode{"71",
-                       "the mission does not fly here, or its launcher refused or did not answer"},
-      launch::ExitCode{"78", "the profile is wrong"},
-  };
   CLI::Option* profile = add_profile(command, arguments.profile);
   add_variables(command, arguments.variables)->needs(profile);
   add_host(command, arguments.host)->needs(profile);
-  command.footer(command.get_footer() + "\n" + exit_codes_text(kCodes));
+  add_exit_codes(command, launch::kAsking);
   return profile;
 }
 

@@ -99,11 +99,11 @@ int look(const Onlooker& onlooker, const std::function<int()>& command) {
     throw;
   } catch (const Unavailable& error) {
     if (!launch::address_space_limit().empty()) throw;  // which is told as the cause
-    return fail(onlooker, error, kNothingThere);
+    return fail(onlooker, error, launch::kNothingThere);
   } catch (const Disconnected& error) {
-    return fail(onlooker, error, kNothingThere);
+    return fail(onlooker, error, launch::kNothingThere);
   } catch (const TimedOut& error) {
-    return fail(onlooker, error, kNoAnswer);
+    return fail(onlooker, error, launch::kNoAnswer);
   }
 }
 

@@ -236,7 +236,7 @@ int list_parameters(const ParamArguments& arguments) {
     }
     tell_missions_elsewhere(arguments);
   }
-  return complete ? 0 : kNoAnswer;
+  return complete ? 0 : launch::kNoAnswer;
 }
 
 int get_parameter(const ParamArguments& arguments) {

@@ -143,7 +143,7 @@ int record(const RecordArguments& arguments) {
   tell_missing(arguments.topics, recorder.statistics().channels, inspector);
   if (has_mission(recorder.statistics())) return 0;
   std::fputs("skein: nothing was recorded\n", stderr);
-  return kNothingThere;
+  return launch::kNothingThere;
 }
 
 }  // namespace skein::command

@@ -7,7 +7,6 @@
 #include <csignal>
 #include <set>
 
-#include "command/look/onlooker.hpp"
 #include "errand.hpp"
 #include "test/tools/command_run.hpp"
 #include "test/tools/installed.hpp"
@@ -47,9 +46,8 @@ class Table {
     shown_.insert(ended_with);
   }
 
-  template <class Rows>
-  void demand_all_of(const Rows& rows) const {
-    for (const launch::ExitCode& row : rows) {
+  void demand_all() const {
+    for (const launch::ExitCode& row : launch::kExitCodes) {
       CAPTURE(std::string(row.code), std::string(row.meaning));
       CHECK(shown_.contains(example_of(row)));
     }
@@ -100,7 +98,7 @@ TEST_CASE("each exit code of the table has its cause") {
                              {"param", "get", "nobody", "Period", "--wait", "0.1"}}) {
     Words there = words;
     there.insert(there.end(), {"--domain", "49"});
-    table.expect(command::kNothingThere, there);
+    table.expect(launch::kNothingThere, there);
   }
 
   const std::string nowhere = "/no/such/folder/file";
@@ -139,9 +137,8 @@ TEST_CASE("each exit code of the table has its cause") {
                                         "<peer name='office' component='office.xml' "
                                         "stop_timeout='100 ms'/>")});
   REQUIRE(desk.writes("office: ready"));
-  table.expect(command::kNoAnswer,
+  table.expect(launch::kNoAnswer,
                {"call", "Desk", "ask", "\"spin\"", "--within", "200ms", "--domain", "48"});
 
-  table.demand_all_of(launch::kExitCodes);
-  table.demand_all_of(command::kLookingExitCodes);
+  table.demand_all();
 }
