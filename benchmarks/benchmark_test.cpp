@@ -8,6 +8,7 @@
 
 #include "harness/comparison.hpp"
 #include "harness/goals.hpp"
+#include "skein/selection.hpp"
 #include "test/tools/places.hpp"
 #include "test/tools/shell.hpp"
 
@@ -356,7 +357,8 @@ TEST_CASE("each strategy is scored, and decisions.csv has a row for each request
   const QuickRun& run = QuickRun::get();
   const std::string loss = "PAR10 beyond the virtual best, mean over requests";
   std::size_t requests = 0;
-  for (const char* strategy : {"skein learned", "skein declared", "skein fixed_order"}) {
+  for (const std::string& name : skein::StrategyFactory().names()) {
+    const std::string strategy = "skein " + name;
     CHECK(has(run.results, loss, strategy, {{"where", "held-out"}}, "single best"));
     CHECK(has(run.results, "results that the Head accepts", strategy, json::object()));
     CHECK(has(run.results, "deadline to the answer, an algorithm hangs", strategy, json::object()));
@@ -380,7 +382,8 @@ TEST_CASE("each strategy is scored on recorded problems, which are skipped witho
     CHECK(has(results, claim, "skein learned", json::object(), "single best"));
     return;
   }
-  for (const char* strategy : {"skein learned", "skein declared", "skein fixed_order"}) {
+  for (const std::string& name : skein::StrategyFactory().names()) {
+    const std::string strategy = "skein " + name;
     for (const char* mode : {"learned from the other folds", "online, from nothing"}) {
       CHECK(has(results, claim, strategy, {{"mode", mode}}, "single best"));
       CHECK(has(results, "recorded problems: share of the gap left open", strategy,

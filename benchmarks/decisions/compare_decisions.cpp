@@ -8,11 +8,10 @@
 #include "decisions/scores.hpp"
 #include "harness/goals.hpp"
 #include "navigation/route_checker/route_checker.hpp"
+#include "skein/selection.hpp"
 
 namespace skein::benchmarks {
 namespace {
-
-const std::vector<std::string> kStrategies{"learned", "declared", "fixed_order"};
 
 /// The independent judge: shares no code with planners and Body. Turns are not judged: this
 /// aircraft turns on the spot.
@@ -32,7 +31,7 @@ class Contest {
     const auto algorithms = make_algorithms(requests_.terrains, stage_);
     for (const Algorithm& algorithm : algorithms)
       contestants_.push_back(std::make_unique<Contestant>(algorithm, requests_.terrains));
-    for (const std::string& strategy : kStrategies) {
+    for (const std::string& strategy : StrategyFactory().names()) {
       contestants_.push_back(
           std::make_unique<Contestant>(strategy, algorithms, requests_.terrains));
     }
@@ -130,7 +129,7 @@ std::vector<Comparison> compare_decisions(const DecisionPlan& plan,
   const std::vector<Trial> trials = contest.run();
   write_decision_table(trials, folder / "decisions.csv");
   std::vector<Comparison> comparisons;
-  for (const std::string& strategy : kStrategies) {
+  for (const std::string& strategy : StrategyFactory().names()) {
     const Scores scores = scores_of(strategy, trials, "held_out");
     comparisons.push_back(loss_of(strategy, scores, "held-out", contest.without_data()));
     comparisons.push_back(loss_of(strategy, scores_of(strategy, trials, "training"), "training",

@@ -9,6 +9,7 @@
 #include "data_files.hpp"
 #include "selection/replay.hpp"
 #include "skein/clock.hpp"
+#include "skein/selection.hpp"
 
 namespace skein::benchmarks {
 namespace {
@@ -111,7 +112,7 @@ std::vector<Comparison> compare_selection(const SelectionPlan& plan) {
   std::map<std::pair<std::string, std::string>, std::vector<double>> gaps;  // by mode, strategy
   for (const auto& folder : folders) {
     const Scenario scenario = selection::read_scenario(folder);
-    for (const std::string strategy : {"learned", "declared", "fixed_order"}) {
+    for (const std::string& strategy : StrategyFactory().names()) {
       for (const std::string mode : {kFolds, kOnline}) {
         const auto answers = mode == kFolds ? selection::replay_folds(scenario, strategy, clock)
                                             : selection::replay_online(scenario, strategy, clock);

@@ -230,9 +230,9 @@ TEST_CASE("a default that the Head does not know is refused with those that it k
   options.strategy = "slowst";
   options.strategies = {std::make_shared<Slowest>()};
   CHECK_THROWS_AS(Office(options), InvalidArgument);
-  CHECK_THROWS_WITH(Office(options),
-                    Catch::Contains("'slowst' (did you mean 'slowest'?)") &&
-                        Catch::Contains("there are: declared, fixed_order, learned, slowest"));
+  CHECK_THROWS_WITH(Office(options), Catch::Contains("'slowst' (did you mean 'slowest'?)") &&
+                                         Catch::Contains("there are: ") &&
+                                         Catch::Contains(", slowest"));
 }
 
 TEST_CASE_METHOD(Office, "a client's session selects by the strategy that it asked for", "[wire]") {
@@ -291,7 +291,7 @@ TEST_CASE_METHOD(Office, "a client changes its strategy by disconnecting and con
   const auto client = make_client();
   const std::string first =
       owner->broker().find_service(owner->broker().query("crew/Worker")).front()->entity;
-  for (const std::string strategy : {"declared", "fixed_order", "learned"}) {
+  for (const std::string& strategy : StrategyFactory().names()) {
     auto desk = client->connect<crew::Desk>({.strategy = strategy});
     CHECK(desk.ask("it") == (strategy == "fixed_order" ? first : "b") + " did it");
     CHECK(owner->head().decisions().back().strategy == strategy);
@@ -381,7 +381,7 @@ TEST_CASE("a skeleton without an implementation is refused when it is made") {
 }
 
 TEST_CASE("a task may have more time than any clock counts, whatever the strategy") {
-  Office office(HeadOptions{.strategy = GENERATE("declared", "fixed_order", "learned")});
+  Office office(HeadOptions{.strategy = GENERATE(from_range(StrategyFactory().names()))});
   office.add("quick", Place::Inside, answer_as("quick"), declared("10", "0.5"));
   office.add("other", Place::Inside, answer_as("other"), declared("10", "0.5"));
   auto task = Office::task();

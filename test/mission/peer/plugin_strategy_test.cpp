@@ -25,7 +25,8 @@ TEST_CASE("a strategy that no plugin brings starts nothing, and the known ones a
   const MissionRun run(profile.file());
   INFO(run.output());
   CHECK(run.exit_code() == 78);
-  CHECK_THAT(run.output(),
-             Contains("unknown selection strategy 'humblst' (did you mean 'humblest'?); there are: "
-                      "declared, fixed_order, humblest, learned"));
+  CHECK_THAT(
+      run.output(),
+      Contains("unknown selection strategy 'humblst' (did you mean 'humblest'?); there are: ") &&
+          Contains(" humblest, "));
 }
