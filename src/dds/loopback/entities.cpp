@@ -2,6 +2,7 @@
 
 #include "dds/port/options_check.hpp"
 #include "dds/port/sample_format.hpp"
+#include "dds/port/vendor_names.hpp"
 
 namespace skein::dds::loopback {
 namespace {
@@ -13,7 +14,7 @@ class LoopbackWriter final : public Writer {
     hub_->add(core_);
   }
   ~LoopbackWriter() override {
-    hub_->remove(core_);
+    hub_->remove(*core_);
     core_->participant->topics.release(core_->topic.name, [](int) {});
   }
 
@@ -29,7 +30,7 @@ class LoopbackWriter final : public Writer {
     return hub_->wait_for_acknowledgments(*core_, timeout);
   }
   Guid guid() const override { return core_->guid; }
-  std::vector<Guid> matched_readers() const override { return hub_->matched_readers(*core_); }
+  std::vector<Guid> matched_readers() const override { return hub_->matched(*core_); }
 
  private:
   std::shared_ptr<Hub> hub_;
@@ -44,7 +45,7 @@ class LoopbackReader final : public Reader {
     hub_->add(core_);
   }
   ~LoopbackReader() override {
-    hub_->remove(core_);
+    hub_->remove(*core_);
     core_->participant->topics.release(core_->topic.name, [](int) {});
   }
 
@@ -52,7 +53,7 @@ class LoopbackReader final : public Reader {
     return core_->queue.take(consumer, limit);
   }
   Guid guid() const override { return core_->guid; }
-  std::vector<Guid> matched_writers() const override { return hub_->matched_writers(*core_); }
+  std::vector<Guid> matched_writers() const override { return hub_->matched(*core_); }
   ReceiveCounters counters() const override { return core_->queue.counters(); }
 
  private:
@@ -64,45 +65,67 @@ class LoopbackReader final : public Reader {
 constexpr std::uint8_t kWriterKind = 0x02;
 constexpr std::uint8_t kReaderKind = 0x07;
 
+class LoopbackParticipant final : public Participant {
+ public:
+  LoopbackParticipant(std::shared_ptr<Hub> hub, const ParticipantOptions& options)
+      : hub_(std::move(hub)), core_(hub_->join(options)) {}
+  ~LoopbackParticipant() override { hub_->leave(core_); }
+
+  std::unique_ptr<Writer> create_writer(const Topic& topic, const Qos& qos,
+                                        WriterListener listener) override {
+    check_qos(topic, qos);
+    auto core = std::make_shared<WriterCore>(qos, *hub_);
+    prepare(*core, topic, qos, kWriterKind);
+    core->listener = std::move(listener);
+    return std::make_unique<LoopbackWriter>(hub_, std::move(core));
+  }
+  std::unique_ptr<Reader> create_reader(const Topic& topic, const Qos& qos,
+                                        ReaderListener listener) override {
+    check_qos(topic, qos);
+    auto core = std::make_shared<ReaderCore>(topic, qos, *hub_);
+    prepare(*core, topic, qos, kReaderKind);
+    core->listener = std::move(listener);
+    return std::make_unique<LoopbackReader>(hub_, std::move(core));
+  }
+  Guid guid() const override { return core_->guid; }
+
+ private:
+  void prepare(EndpointCore& endpoint, const Topic& topic, const Qos& qos, std::uint8_t kind) {
+    core_->topics.acquire(topic, [] { return 0; });
+    endpoint.participant = core_;
+    endpoint.topic = topic;
+    endpoint.qos = qos;
+    endpoint.guid = core_->guid;
+    const std::uint32_t number = ++core_->last_entity;
+    endpoint.guid.bytes[12] = static_cast<std::uint8_t>(number >> 16);
+    endpoint.guid.bytes[13] = static_cast<std::uint8_t>(number >> 8);
+    endpoint.guid.bytes[14] = static_cast<std::uint8_t>(number);
+    endpoint.guid.bytes[15] = kind;
+  }
+
+  std::shared_ptr<Hub> hub_;
+  std::shared_ptr<ParticipantCore> core_;
+};
+
+class LoopbackVendor final : public Vendor {
+ public:
+  explicit LoopbackVendor(std::shared_ptr<Hub> hub) : hub_(std::move(hub)) {}
+  std::string name() const override { return kLoopback; }
+  bool is_inside_process() const override { return true; }
+  std::unique_ptr<Participant> create_participant(const ParticipantOptions& options) override {
+    check_options(options);
+    refuse_shared_memory(options, "the loopback network");
+    return std::make_unique<LoopbackParticipant>(hub_, options);
+  }
+
+ private:
+  std::shared_ptr<Hub> hub_;
+};
+
 }  // namespace
 
-std::unique_ptr<Participant> LoopbackVendor::create_participant(const ParticipantOptions& options) {
-  check_options(options);
-  refuse_shared_memory(options, "the loopback network");
-  return std::make_unique<LoopbackParticipant>(hub_, options);
-}
-
-void LoopbackParticipant::prepare(EndpointCore& endpoint, const Topic& topic, const Qos& qos,
-                                  std::uint8_t kind) {
-  core_->topics.acquire(topic, [] { return 0; });
-  endpoint.participant = core_;
-  endpoint.topic = topic;
-  endpoint.qos = qos;
-  endpoint.guid = core_->guid;
-  std::lock_guard lock(mutex_);
-  const std::uint32_t number = ++core_->last_entity;
-  endpoint.guid.bytes[12] = static_cast<std::uint8_t>(number >> 16);
-  endpoint.guid.bytes[13] = static_cast<std::uint8_t>(number >> 8);
-  endpoint.guid.bytes[14] = static_cast<std::uint8_t>(number);
-  endpoint.guid.bytes[15] = kind;
-}
-
-std::unique_ptr<Writer> LoopbackParticipant::create_writer(const Topic& topic, const Qos& qos,
-                                                           WriterListener listener) {
-  check_qos(topic, qos);
-  auto core = std::make_shared<WriterCore>(qos, *hub_);
-  prepare(*core, topic, qos, kWriterKind);
-  core->listener = std::move(listener);
-  return std::make_unique<LoopbackWriter>(hub_, std::move(core));
-}
-
-std::unique_ptr<Reader> LoopbackParticipant::create_reader(const Topic& topic, const Qos& qos,
-                                                           ReaderListener listener) {
-  check_qos(topic, qos);
-  auto core = std::make_shared<ReaderCore>(topic, qos, *hub_);
-  prepare(*core, topic, qos, kReaderKind);
-  core->listener = std::move(listener);
-  return std::make_unique<LoopbackReader>(hub_, std::move(core));
+std::shared_ptr<Vendor> make_vendor(std::shared_ptr<Hub> hub) {
+  return std::make_shared<LoopbackVendor>(std::move(hub));
 }
 
 }  // namespace skein::dds::loopback

@@ -1,67 +1,69 @@
-#include "hub.hpp"
+#include "loopback_lease_watch.hpp"
 
 namespace skein::dds::loopback {
 
-bool Hub::connected(const ParticipantCore& one, const ParticipantCore& other) const {
-  if (&one == &other) return true;
-  if (one.options.domain != other.options.domain || one.killed || other.killed) return false;
-  return !isolated_.contains(one.guid) && !isolated_.contains(other.guid) &&
-         !separated_.contains(std::minmax(one.guid, other.guid));
-}
-
-/// Follows every change of who can hear whom. A paused observer notices nothing until it resumes.
-void Hub::update_presence() {
-  for (const auto& [observer_guid, observer] : participants_) {
+void LeaseWatch::update_presence() {
+  for (const auto& [observer_guid, observer] : state_.topology.participants()) {
     if (observer->paused || observer->killed) continue;
-    for (const auto& [observed_guid, observed] : participants_) {
+    for (const auto& [observed_guid, observed] : state_.topology.participants()) {
       if (observer == observed || observer->options.domain != observed->options.domain) continue;
       View& view = observer->views[observed_guid];
-      const bool heard = connected(*observer, *observed) && !observed->paused;
+      const bool heard = state_.topology.connected(*observer, *observed) && !observed->paused;
       if (heard && !view.heard) hear(*observer, observed, view);
       if (!heard && view.heard) lose_sound(*observer, *observed, view);
     }
   }
 }
 
-void Hub::hear(ParticipantCore& observer, const std::shared_ptr<ParticipantCore>& observed,
-               View& view) {
+void LeaseWatch::say_goodbye(const Guid& participant) {
+  for (const auto& [guid, other] : state_.topology.participants()) {
+    const auto view = other->views.find(participant);
+    if (view == other->views.end() || !view->second.heard) continue;
+    forget(*other, participant);
+    other->views.erase(view);
+  }
+}
+
+void LeaseWatch::hear(ParticipantCore& observer, const std::shared_ptr<ParticipantCore>& observed,
+                      View& view) {
   view.heard = true;
   ++view.generation;
   if (!view.known) {
     view.known = true;
     tell_presence(observer, observed->guid, true);
-    match_all(observer, *observed);
+    matching_.match_all(observer, *observed);
   }
-  for (auto& [id, match] : matches_) {
+  for (auto& [id, match] : state_.matches) {
     if (match.alive || match.writer->participant != observed) continue;
     if (match.reader->participant.get() != &observer) continue;
     match.alive = true;
-    post(match.reader.get(), [reader = match.reader, writer = id.first] {
-      if (reader->listener.on_liveliness) reader->listener.on_liveliness(writer, true);
-    });
+    state_.callbacks.tell(match.reader, &ReaderListener::on_liveliness, id.first, true);
   }
-  repeat_between(observer, *observed);
+  transfers_.repeat_between(observer, *observed);
 }
 
-void Hub::lose_sound(ParticipantCore& observer, ParticipantCore& observed, View& view) {
+void LeaseWatch::lose_sound(const ParticipantCore& observer, const ParticipantCore& observed,
+                            View& view) {
   view.heard = false;
   const std::uint64_t generation = ++view.generation;
-  for (const auto& [id, match] : matches_) {
+  for (const auto& [id, match] : state_.matches) {
     if (!match.reader_side || !match.reader->qos.liveliness_lease) continue;
     if (match.writer->participant.get() != &observed) continue;
     if (match.reader->participant.get() != &observer) continue;
-    after(*match.reader->qos.liveliness_lease,
-          [id = id, generation](Hub& hub) { hub.expire_liveliness(id, generation); });
+    state_.later(*match.reader->qos.liveliness_lease,
+                 [this, id = id, generation] { expire_liveliness(id, generation); });
   }
-  after(observed.options.lease,
-        [observer = observer.guid, observed = observed.guid, generation](Hub& hub) {
-          hub.expire_participant(observer, observed, generation);
-        });
+  state_.later(observed.options.lease,
+               [this, observer = observer.guid, observed = observed.guid, generation] {
+                 if (!still_silent(observer, observed, generation)) return;
+                 forget(*state_.topology.participants().at(observer), observed);
+               });
 }
 
-bool Hub::still_silent(const Guid& observer, const Guid& observed, std::uint64_t generation) {
-  const auto found = participants_.find(observer);
-  if (found == participants_.end() || found->second->killed) return false;
+bool LeaseWatch::still_silent(const Guid& observer, const Guid& observed,
+                              std::uint64_t generation) {
+  const auto found = state_.topology.participants().find(observer);
+  if (found == state_.topology.participants().end() || found->second->killed) return false;
   ParticipantCore& participant = *found->second;
   const auto view = participant.views.find(observed);
   if (view == participant.views.end() || view->second.generation != generation) return false;
@@ -70,45 +72,33 @@ bool Hub::still_silent(const Guid& observer, const Guid& observed, std::uint64_t
   return !participant.paused;
 }
 
-void Hub::expire_participant(const Guid& observer, const Guid& observed, std::uint64_t generation) {
-  if (!still_silent(observer, observed, generation)) return;
-  forget(*participants_.at(observer), observed);
-}
-
-void Hub::expire_liveliness(const MatchId& id, std::uint64_t generation) {
-  const auto found = matches_.find(id);
-  if (found == matches_.end() || !found->second.reader_side || !found->second.alive) return;
+void LeaseWatch::expire_liveliness(const MatchId& id, std::uint64_t generation) {
+  const auto found = state_.matches.find(id);
+  if (found == state_.matches.end() || !found->second.reader_side || !found->second.alive) return;
   Match& match = found->second;
   if (!still_silent(match.reader->participant->guid, match.writer->participant->guid, generation)) {
     return;
   }
   match.alive = false;
   match.reader->queue.writer_not_alive(id.first);
-  post(match.reader.get(), [reader = match.reader, writer = id.first] {
-    if (reader->listener.on_liveliness) reader->listener.on_liveliness(writer, false);
-  });
+  state_.callbacks.tell(match.reader, &ReaderListener::on_liveliness, id.first, false);
 }
 
 /// The observer drops all that it knows of the observed.
-void Hub::forget(ParticipantCore& observer, const Guid& observed) {
+void LeaseWatch::forget(ParticipantCore& observer, const Guid& observed) {
   View& view = observer.views[observed];
   if (!view.known) return;
-  for (auto& [id, match] : matches_) {
-    const Guid& writing = match.writer->participant->guid;
-    const Guid& reading = match.reader->participant->guid;
-    if (writing == observed && reading == observer.guid) unmatch_reader_side(match);
-    if (reading == observed && writing == observer.guid) unmatch_writer_side(match);
-  }
-  drop_unused_links();
+  matching_.unmatch_all(observer, observed);
   view.known = false;
   tell_presence(observer, observed, false);
 }
 
-void Hub::tell_presence(ParticipantCore& observer, const Guid& observed, bool present) {
+void LeaseWatch::tell_presence(const ParticipantCore& observer, const Guid& observed,
+                               bool present) {
   if (!observer.options.on_participant) return;
-  callbacks_.push_back({&observer, [tell = observer.options.on_participant, observed, present] {
-                          tell(observed, present);
-                        }});
+  state_.callbacks.post(&observer, [tell = observer.options.on_participant, observed, present] {
+    tell(observed, present);
+  });
 }
 
 }  // namespace skein::dds::loopback

@@ -1,5 +1,6 @@
+#include "matching.hpp"
+
 #include "dds/port/compatibility.hpp"
-#include "hub.hpp"
 
 namespace skein::dds::loopback {
 namespace {
@@ -13,16 +14,16 @@ std::optional<Incompatibility> mismatch(const EndpointCore& writer, const Endpoi
   return find_incompatibility(topic, peer, writer.qos, reader.qos);
 }
 
-}  // namespace
-
-bool Hub::knows(const ParticipantCore& observer, const ParticipantCore& observed) const {
+bool knows(const ParticipantCore& observer, const ParticipantCore& observed) {
   if (&observer == &observed) return true;
   const auto view = observer.views.find(observed.guid);
   return view != observer.views.end() && view->second.known;
 }
 
-void Hub::match(const std::shared_ptr<WriterCore>& writer,
-                const std::shared_ptr<ReaderCore>& reader) {
+}  // namespace
+
+void Matching::match(const std::shared_ptr<WriterCore>& writer,
+                     const std::shared_ptr<ReaderCore>& reader) {
   if (writer->topic.name != reader->topic.name || !share_partition(writer->qos, reader->qos)) {
     return;
   }
@@ -35,156 +36,124 @@ void Hub::match(const std::shared_ptr<WriterCore>& writer,
   const bool by_reader = knows(*reader->participant, *writer->participant);
   if (!by_writer && !by_reader) return;
   Match& match =
-      matches_.try_emplace({writer->guid, reader->guid}, Match{writer, reader}).first->second;
+      state_.matches.try_emplace({writer->guid, reader->guid}, Match{writer, reader}).first->second;
   const bool rematched = by_reader && !match.reader_side && match.writer_side;
   if (by_reader && !match.reader_side) match_reader_side(match);
   if (by_writer && !match.writer_side) {
     match_writer_side(match);
   } else if (rematched) {
-    replay_history(match);
+    transfers_.replay_history(match);
   }
 }
 
-void Hub::tell_incompatible(const std::shared_ptr<WriterCore>& writer,
-                            const std::shared_ptr<ReaderCore>& reader) {
-  const auto tell = [&](const auto& endpoint, const EndpointCore& peer) {
+void Matching::tell_incompatible(const std::shared_ptr<WriterCore>& writer,
+                                 const std::shared_ptr<ReaderCore>& reader) {
+  const auto tell = [&](const auto& endpoint, const EndpointCore& peer, auto on_incompatible) {
     if (!knows(*endpoint->participant, *peer.participant)) return;
     if (!endpoint->refused.insert(peer.guid).second) return;
-    const auto why =
-        with_other_side(*mismatch(*writer, *reader, peer.guid), peer.participant->options.name);
-    post(endpoint.get(), [endpoint, why] {
-      if (endpoint->listener.on_incompatible) endpoint->listener.on_incompatible(why);
-    });
+    state_.callbacks.tell(
+        endpoint, on_incompatible,
+        with_other_side(*mismatch(*writer, *reader, peer.guid), peer.participant->options.name));
   };
-  tell(writer, *reader);
-  tell(reader, *writer);
+  tell(writer, *reader, &WriterListener::on_incompatible);
+  tell(reader, *writer, &ReaderListener::on_incompatible);
 }
 
-void Hub::match_all(const ParticipantCore& one, const ParticipantCore& other) {
-  const auto between = [&](const EndpointCore& writer, const EndpointCore& reader) {
-    const ParticipantCore* writing = writer.participant.get();
-    const ParticipantCore* reading = reader.participant.get();
-    return (writing == &one && reading == &other) || (writing == &other && reading == &one);
-  };
+void Matching::match_all(const ParticipantCore& one, const ParticipantCore& other) {
   for (const auto& [writer_guid, writer] : writers_) {
     for (const auto& [reader_guid, reader] : readers_) {
-      if (between(*writer, *reader)) match(writer, reader);
+      if (between(*writer, *reader, one, other)) match(writer, reader);
     }
   }
 }
 
-void Hub::match_reader_side(Match& match) {
+void Matching::unmatch_all(const ParticipantCore& observer, const Guid& observed) {
+  for (auto& [id, match] : state_.matches) {
+    const Guid& writing = match.writer->participant->guid;
+    const Guid& reading = match.reader->participant->guid;
+    if (writing == observed && reading == observer.guid) unmatch_reader_side(match);
+    if (reading == observed && writing == observer.guid) unmatch_writer_side(match);
+  }
+  drop_unused_links();
+}
+
+void Matching::match_reader_side(Match& match) {
   match.reader_side = true;
   match.alive = true;
   match.delivered = match.reader->qos.transient_local ? 0 : match.writer->last_sequence;
-  post(match.reader.get(), [reader = match.reader, writer = match.writer->guid] {
-    if (reader->listener.on_matched) reader->listener.on_matched(writer, true);
-  });
+  state_.callbacks.tell(match.reader, &ReaderListener::on_matched, match.writer->guid, true);
 }
 
-void Hub::match_writer_side(Match& match) {
+void Matching::match_writer_side(Match& match) {
   match.writer_side = true;
-  post(match.writer.get(), [writer = match.writer, reader = match.reader->guid] {
-    if (writer->listener.on_matched) writer->listener.on_matched(reader, true);
-  });
-  replay_history(match);
+  state_.callbacks.tell(match.writer, &WriterListener::on_matched, match.reader->guid, true);
+  transfers_.replay_history(match);
 }
 
-void Hub::replay_history(Match& match) {
-  if (!match.reader->qos.transient_local) return;
-  std::vector<MessagePtr> missed;
-  match.writer->history.for_each([&](const MessagePtr& message) {
-    if (message->sequence > match.delivered) missed.push_back(message);
-  });
-  for (const MessagePtr& message : missed) enqueue(match, message);
-}
-
-void Hub::unmatch_writer_side(Match& match) {
+void Matching::unmatch_writer_side(Match& match) {
   if (!match.writer_side) return;
   match.writer_side = false;
-  match.pending.clear();
-  changed_.notify_all();
+  transfers_.give_up(match);
   if (match.writer->closed) return;
-  post(match.writer.get(), [writer = match.writer, reader = match.reader->guid] {
-    if (writer->listener.on_matched) writer->listener.on_matched(reader, false);
-  });
+  state_.callbacks.tell(match.writer, &WriterListener::on_matched, match.reader->guid, false);
 }
 
-void Hub::unmatch_reader_side(Match& match) {
+void Matching::unmatch_reader_side(Match& match) {
   if (!match.reader_side) return;
   match.reader_side = false;
   match.reader->queue.writer_unmatched(match.writer->guid);
   if (match.reader->closed) return;
-  post(match.reader.get(), [reader = match.reader, writer = match.writer->guid] {
-    if (reader->listener.on_matched) reader->listener.on_matched(writer, false);
-  });
+  state_.callbacks.tell(match.reader, &ReaderListener::on_matched, match.writer->guid, false);
 }
 
-void Hub::drop_unused_links() {
-  std::erase_if(matches_, [](const auto& entry) {
+void Matching::drop_unused_links() {
+  std::erase_if(state_.matches, [](const auto& entry) {
     return !entry.second.writer_side && !entry.second.reader_side;
   });
 }
 
-void Hub::add(const std::shared_ptr<WriterCore>& writer) {
-  Lock lock(mutex_);
+void Matching::add(const std::shared_ptr<WriterCore>& writer) {
   writers_.emplace(writer->guid, writer);
   for (const auto& [guid, reader] : readers_) match(writer, reader);
-  run_callbacks(lock);
 }
 
-void Hub::add(const std::shared_ptr<ReaderCore>& reader) {
-  Lock lock(mutex_);
+void Matching::add(const std::shared_ptr<ReaderCore>& reader) {
   readers_.emplace(reader->guid, reader);
   for (const auto& [guid, writer] : writers_) match(writer, reader);
-  run_callbacks(lock);
 }
 
-void Hub::remove(const std::shared_ptr<WriterCore>& writer) {
-  Lock lock(mutex_);
-  writer->closed = true;
-  writers_.erase(writer->guid);
-  for (auto& [id, match] : matches_) {
-    if (match.writer != writer) continue;
-    unmatch_writer_side(match);
-    // Unreachable readers keep the match until the participant's lease expires.
-    if (connected(*writer->participant, *match.reader->participant)) unmatch_reader_side(match);
+void Matching::remove(EndpointCore& endpoint) {
+  endpoint.closed = true;
+  writers_.erase(endpoint.guid);
+  readers_.erase(endpoint.guid);
+  for (auto& [id, match] : state_.matches) {
+    const bool writes = id.first == endpoint.guid;
+    if (!writes && id.second != endpoint.guid) continue;
+    // Unreachable ones keep the match until the participant's lease expires.
+    const bool reachable =
+        state_.topology.connected(*match.writer->participant, *match.reader->participant);
+    if (writes || reachable) unmatch_writer_side(match);
+    if (!writes || reachable) unmatch_reader_side(match);
   }
   drop_unused_links();
-  wait_until_idle(static_cast<const EndpointCore*>(writer.get()), lock);
-  run_callbacks(lock);
 }
 
-void Hub::remove(const std::shared_ptr<ReaderCore>& reader) {
-  Lock lock(mutex_);
-  reader->closed = true;
-  readers_.erase(reader->guid);
-  for (auto& [id, match] : matches_) {
-    if (match.reader != reader) continue;
-    unmatch_reader_side(match);
-    if (connected(*reader->participant, *match.writer->participant)) unmatch_writer_side(match);
+std::vector<Guid> Matching::matched(const Guid& endpoint) const {
+  std::vector<Guid> others;
+  for (const auto& [id, match] : state_.matches) {
+    if (id.first == endpoint && match.writer_side) others.push_back(id.second);
+    if (id.second == endpoint && match.reader_side) others.push_back(id.first);
   }
-  drop_unused_links();
-  wait_until_idle(static_cast<const EndpointCore*>(reader.get()), lock);
-  run_callbacks(lock);
+  return others;
 }
 
-std::vector<Guid> Hub::matched_readers(const WriterCore& writer) {
-  Lock lock(mutex_);
-  std::vector<Guid> readers;
-  for (const auto& [id, match] : matches_) {
-    if (id.first == writer.guid && match.writer_side) readers.push_back(id.second);
-  }
-  return readers;
-}
-
-std::vector<Guid> Hub::matched_writers(const ReaderCore& reader) {
-  Lock lock(mutex_);
-  std::vector<Guid> writers;
-  for (const auto& [id, match] : matches_) {
-    if (id.second == reader.guid && match.reader_side) writers.push_back(id.first);
-  }
-  return writers;
+void Matching::deadline_missed(const Guid& endpoint, const KeyHash& key) {
+  const auto tell = [&](const auto& endpoints, auto on_deadline_missed) {
+    const auto found = endpoints.find(endpoint);
+    if (found != endpoints.end()) state_.callbacks.tell(found->second, on_deadline_missed, key);
+  };
+  tell(writers_, &WriterListener::on_deadline_missed);
+  tell(readers_, &ReaderListener::on_deadline_missed);
 }
 
 }  // namespace skein::dds::loopback
