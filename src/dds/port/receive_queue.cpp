@@ -86,7 +86,10 @@ bool ReceiveQueue::put(Arrival& arrival, const WriterOffer* offer) {
     ++counters_.malformed;
     return false;
   }
-  if (offer == nullptr) offer = offer_of(arrival.writer);
+  if (offer == nullptr && !offers_.empty()) {
+    const auto found = offers_.find(arrival.writer);
+    if (found != offers_.end()) offer = &found->second;
+  }
   const std::optional<SourceTime> expiry = offer != nullptr ? admit(arrival, *key, *offer) : kNever;
   if (!expiry) return false;
   const bool replaced = waiting_.push(
@@ -105,12 +108,6 @@ std::optional<KeyHash> ReceiveQueue::key_of(const Arrival& arrival) const {
   if (arrival.key) return arrival.key;
   if (!find_key_ || !plain) return std::nullopt;
   return find_key_(arrival.payload.cdr());
-}
-
-const WriterOffer* ReceiveQueue::offer_of(const Guid& writer) const {
-  if (offers_.empty()) return nullptr;
-  const auto found = offers_.find(writer);
-  return found == offers_.end() ? nullptr : &found->second;
 }
 
 /// When the sample expires, counted from when it was written; nothing where it must not pass.

@@ -98,7 +98,6 @@ class ReceiveQueue {
 
   bool put(Arrival& arrival, const WriterOffer* offer);
   std::optional<KeyHash> key_of(const Arrival& arrival) const;
-  const WriterOffer* offer_of(const Guid& writer) const;
   std::optional<SourceTime> admit(const Arrival& arrival, const KeyHash& key,
                                   const WriterOffer& offer);
   bool drop_expired(SourceTime expiry);
