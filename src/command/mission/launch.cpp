@@ -131,10 +131,10 @@ int with_output_checked(Narrator& narrator, int code) {
 }
 
 /// For the launcher on another host, which keeps the logs.
-int run_for_another(const launch::LaunchPlan& plan, const launch::MissionClaim& claim,
+int run_for_another(const launch::LaunchPlan& plan, launch::MissionClaim& claim,
                     const profile::MissionProfile& mission) {
   launch::SupervisorOptions options;
-  options.requests = claim.requests();
+  options.requests = &claim.requests();
   return launch::run_attended(plan, std::move(options), hello_of(mission));
 }
 
@@ -151,7 +151,7 @@ int launch(const LaunchArguments& arguments) {
   if (plan.children.empty()) throw InvalidArgument(launch::nobody_here(mission, arguments.host));
   launch::demand_address_space();
   const std::string beside = missions_beside(static_cast<std::uint32_t>(mission.domain));
-  const launch::MissionClaim claim(mission, arguments.host);
+  launch::MissionClaim claim(mission, arguments.host);
   // Who reads what it says may go; the mission goes on. Its processes get the default back.
   std::signal(SIGPIPE, SIG_IGN);
   if (arguments.attended) return run_for_another(plan, claim, mission);
@@ -164,7 +164,7 @@ int launch(const LaunchArguments& arguments) {
   for (const std::string& fact : launch::environment_record(mission, SKEIN_VERSION))
     journal->add_event(fact);
   auto options = told_by(narrator, journal);
-  options.requests = claim.requests();
+  options.requests = &claim.requests();
   launch::Supervisor supervisor(plan, std::move(options));
   const launch::LaunchResult outcome = supervisor.run();
   journal->add_event("exit code: " + std::to_string(outcome.exit_code) +

@@ -1,59 +1,78 @@
 #include "request_server.hpp"
 
+#include <poll.h>
 #include <sys/socket.h>
 
 #include <array>
 #include <cerrno>
+#include <utility>
 
-#include "core/system/abstract_socket.hpp"
 #include "core/system/trusted_users.hpp"
+#include "wake_up.hpp"
 
 namespace skein::launch {
 
 namespace {
+
+constexpr int kWaitingClients = 8;
 
 bool has_gone(int client) {
   pollfd end{client, 0, 0};
   return ::poll(&end, 1, 0) == 1 && (end.revents & POLLHUP) != 0;
 }
 
-}  // namespace
-
-void RequestServer::add_to(std::vector<pollfd>& watched) const {
-  if (!is_crowded_) watched.push_back({listener_, POLLIN, 0});
-  for (const Client& client : clients_) watched.push_back({client.socket.get(), POLLIN, 0});
-}
-
-void RequestServer::take_clients() {
-  if (listener_ < 0) return;
-  is_crowded_ = !let_in(listener_, kAcceptedInARow, [&](FileDescriptor& socket) {
-    const auto owner = other_end(socket);
-    if (!owner || !is_own_user_or_root(owner->uid)) return;
-    if (clients_.size() == kMostClients) clients_.pop_front();
-    clients_.push_back({std::move(socket), ""});
-  });
-}
-
-bool RequestServer::is_done(Client& client) const {
-  std::array<char, kLongestRequest> text;
-  const auto size = ::read(client.socket.get(), text.data(), text.size());
+/// Reads from the client, and answers a complete request. Returns whether the client is done.
+bool hear_client(int client, std::string& request, const RequestServer::Answer& answer) {
+  constexpr std::size_t kLongest = RequestServer::kLongestRequest;
+  std::array<char, kLongest> part;
+  const auto size = ::read(client, part.data(), part.size());
   if (size < 0) return errno != EAGAIN && errno != EINTR;
-  client.request.append(text.data(), static_cast<std::size_t>(size));
-  const auto end = client.request.find('\n');
+  request.append(part.data(), static_cast<std::size_t>(size));
+  const auto end = request.find('\n');
   const bool complete = end != std::string::npos;
-  if (!complete && size > 0 && client.request.size() <= kLongestRequest) return false;
-  if (!complete || end > kLongestRequest) return true;
-  if (has_gone(client.socket.get())) return true;  // nobody is to be surprised later
-  const std::string answer = answer_(std::string_view(client.request).substr(0, end));
+  if (!complete && size > 0 && request.size() <= kLongest) return false;
+  if (!complete || end > kLongest) return true;
+  if (has_gone(client)) return true;  // nobody is to be surprised later
+  const std::string text = answer(std::string_view(request).substr(0, end));
   // A client that does not read gets what its socket holds.
-  [[maybe_unused]] const auto sent =
-      ::send(client.socket.get(), answer.data(), answer.size(), MSG_NOSIGNAL);
+  [[maybe_unused]] const auto sent = ::send(client, text.data(), text.size(), MSG_NOSIGNAL);
   return true;
 }
 
-void RequestServer::serve() {
-  take_clients();
-  std::erase_if(clients_, [&](Client& client) { return is_done(client); });
+}  // namespace
+
+RequestServer::RequestServer()
+    : server_(epoll_, [](const ucred& client) { return is_own_user_or_root(client.uid); }) {
+  if (!epoll_) throw_system_error("an epoll descriptor");
+}
+
+bool RequestServer::open(ListeningSocket& socket, const std::string& name) {
+  return server_.open(socket, name, kWaitingClients);
+}
+
+std::optional<RequestServer::Time> RequestServer::serve(Time now, const Answer& answer) {
+  using std::chrono::milliseconds;
+  for (const auto& event : epoll_.wait(milliseconds(0))) {
+    const auto accept = [this](FileDescriptor& socket, const ucred&) { take(socket); };
+    if (server_.handle(event.id, now, accept)) continue;
+    const auto found = clients_.find(event.id);
+    if (found == clients_.end()) continue;
+    auto& [socket, request] = found->second;
+    if (hear_client(socket.get(), request, answer)) drop(found);
+  }
+  return server_.resume(now);
+}
+
+void RequestServer::take(FileDescriptor& socket) {
+  const std::uint64_t id = epoll_.add(socket, EPOLLIN);
+  if (id == 0) return;
+  if (clients_.size() == kMostClients) drop(clients_.begin());
+  clients_.emplace(id, Client{std::move(socket), ""});
+}
+
+void RequestServer::drop(Clients::iterator client) {
+  epoll_.remove(client->second.socket);
+  clients_.erase(client);
 }
 
 }  // namespace skein::launch

@@ -1,49 +1,53 @@
 #pragma once
 
-#include <poll.h>
-
-#include <deque>
+#include <cstdint>
 #include <functional>
+#include <map>
+#include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
-#include "core/system/file_descriptor.hpp"
+#include "core/system/epoll.hpp"
+#include "core/system/local_server.hpp"
 
 namespace skein::launch {
 
-/// Answers requests of one line that come over a listening Unix socket: from processes of this user
-/// and of root alone, a few at a time, and of bounded length. It never waits: whoever calls it
-/// polls its descriptors. A request whose client has gone is not carried out.
+/// Answers requests of one line that come over a Unix socket: from processes of this user and of
+/// root alone, a few at a time, and of bounded length. It never waits: whoever calls it polls its
+/// descriptor. A request whose client has gone is not carried out.
 class RequestServer {
  public:
   static constexpr std::size_t kMostClients = 8;
   static constexpr std::size_t kLongestRequest = 1024;
   using Answer = std::function<std::string(std::string_view request)>;
+  using Time = LocalServer::Time;
 
-  /// `listener` is non-blocking and outlives this object; negative: nobody ever asks.
-  RequestServer(int listener, Answer answer) : listener_(listener), answer_(std::move(answer)) {}
+  /// Throws SystemError if the kernel gives no descriptor.
+  RequestServer();
 
-  void add_to(std::vector<pollfd>& watched) const;
-  /// Whether it lets nobody in, for want of descriptors, and its caller is to call serve() again
-  /// after kAfterShortage.
-  bool is_crowded() const noexcept { return is_crowded_; }
-  /// Takes new clients and answers those whose request has come.
-  void serve();
+  /// See LocalServer.
+  bool open(ListeningSocket& socket, const std::string& name);
+
+  /// Readable if serve() has something to do.
+  int descriptor() const noexcept { return epoll_.descriptor(); }
+
+  /// Takes new clients and answers those whose request has come. Returns when to call it again
+  /// even if nothing comes, if it accepts nobody for a while.
+  std::optional<Time> serve(Time now, const Answer& answer);
 
  private:
   struct Client {
     FileDescriptor socket;
     std::string request;
   };
+  using Clients = std::map<std::uint64_t, Client>;  // the oldest first
 
-  void take_clients();
-  bool is_done(Client& client) const;
+  void take(FileDescriptor& socket);
+  void drop(Clients::iterator client);
 
-  int listener_;
-  Answer answer_;
-  std::deque<Client> clients_;
-  bool is_crowded_ = false;
+  Epoll epoll_;
+  LocalServer server_;
+  Clients clients_;
 };
 
 }  // namespace skein::launch

@@ -248,14 +248,13 @@ MissionClaim::MissionClaim(const profile::MissionProfile& mission, const std::st
   OwnHolders holders;
   for (int number = 0; number < kNames; ++number) refuse_if_flown(number, holders);
   for (int number = 0; number < kNames; ++number) {
-    if (listen_at(socket, name_of(mission, host, number), 8)) {
-      socket_ = std::move(socket);
-      return;
-    }
+    name_ = name_of(mission, host, number);
+    if (requests_.open(socket, name_)) return;
     if (errno != EADDRINUSE) throw_system_error("a socket with a name");
     OwnHolders now;
     refuse_if_flown(number, now);
   }
+  name_.clear();
   log(LogLevel::Warning, "launch",
       "other users' processes have taken all names of the socket for requests (`ss -xlp` shows "
       "them): skein status finds nothing, and nothing keeps this mission from being flown twice");

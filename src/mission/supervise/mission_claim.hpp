@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/system/abstract_socket.hpp"
+#include "mission/process/request_server.hpp"
 #include "mission/profile/mission_profile.hpp"
 
 namespace skein::launch {
@@ -46,11 +46,15 @@ class MissionClaim {
   /// Unavailable where the system refuses a socket. `host`: as for is_here().
   MissionClaim(const profile::MissionProfile& mission, const std::string& host);
 
-  /// A non-blocking socket that listens; -1 where other users' processes have taken all its names.
-  int requests() const noexcept { return socket_.get(); }
+  /// Listens at the claim's socket.
+  RequestServer& requests() noexcept { return requests_; }
+
+  /// The socket's name; empty if other users' processes have taken all names.
+  const std::string& name() const noexcept { return name_; }
 
  private:
-  ListeningSocket socket_;
+  RequestServer requests_;
+  std::string name_;
 };
 
 /// The domain of the mission that the holder of a socket flies, by the socket's name as

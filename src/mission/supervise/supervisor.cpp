@@ -12,7 +12,6 @@
 
 #include "core/printable.hpp"
 #include "core/suggestion.hpp"
-#include "core/system/abstract_socket.hpp"
 #include "core/wall_clock.hpp"
 #include "mission/process/request_server.hpp"
 #include "mission/process/wake_up.hpp"
@@ -78,11 +77,7 @@ std::string refused(const std::string& text) { return std::string(kRefused).appe
 class MissionRun {
  public:
   MissionRun(const LaunchPlan& plan, const SupervisorOptions& options, StopRequest& stop)
-      : plan_(plan),
-        options_(noted(options)),
-        stop_(stop),
-        state_(plan),
-        requests_(options.requests, [this](std::string_view request) { return answer(request); }) {
+      : plan_(plan), options_(noted(options)), stop_(stop), state_(plan) {
     for (std::size_t i = 0; i < plan.children.size(); ++i)
       children_.emplace_back(plan.children[i], state_.child(i), options_, guard_);
   }
@@ -94,7 +89,7 @@ class MissionRun {
       wait();
       for (std::size_t i = 0; i < children_.size(); ++i) look_at(i);
       apply(state_.tick(now()), true);
-      requests_.serve();
+      serve_requests();
       heed_signals();
     }
     note_verdict();
@@ -268,6 +263,12 @@ class MissionRun {
     }
   }
 
+  void serve_requests() {
+    if (!options_.requests) return;
+    requests_due_ = options_.requests->serve(
+        now(), [this](std::string_view request) { return answer(request); });
+  }
+
   std::string answer(std::string_view request) {
     const std::string_view verb = request.substr(0, request.find(' '));
     const std::string_view rest = request.substr(std::min(verb.size() + 1, request.size()));
@@ -338,7 +339,7 @@ class MissionRun {
   void wait() {
     std::vector<pollfd> watched{{stop_.descriptor(), POLLIN, 0},
                                 {signals_.descriptor(), POLLIN, 0}};
-    requests_.add_to(watched);
+    if (options_.requests) watched.push_back({options_.requests->descriptor(), POLLIN, 0});
     for (const auto& child : children_) {
       auto* process = child.process();
       if (process == nullptr) continue;
@@ -348,10 +349,11 @@ class MissionRun {
       }
     }
     using std::chrono::milliseconds;
-    const auto due = state_.next_tick();
+    auto due = state_.next_tick();
+    if (requests_due_) due = due ? std::min(*due, *requests_due_) : requests_due_;
     const auto left = due ? std::chrono::ceil<milliseconds>(*due - now()) : milliseconds(-1);
-    const std::int64_t most = requests_.is_crowded() ? kAfterShortage.count() : kLongestWaitMs;
-    const auto limit = due ? std::clamp<std::int64_t>(left.count(), 0, most) : most;
+    const auto limit =
+        due ? std::clamp<std::int64_t>(left.count(), 0, kLongestWaitMs) : kLongestWaitMs;
     ::poll(watched.data(), watched.size(), static_cast<int>(limit));
   }
 
@@ -369,7 +371,7 @@ class MissionRun {
   const Time start_ = now();
   MissionState state_;
   std::vector<SupervisedChild> children_;
-  RequestServer requests_;
+  std::optional<Time> requests_due_;
   std::optional<LaunchResult> result_;
   std::size_t faults_ = 0;
   std::string first_fault_;

@@ -11,6 +11,8 @@
 
 namespace skein::launch {
 
+class RequestServer;
+
 struct LaunchResult {
   /// One of kExitCodes. 0 only if the mission's peer ended with 0 by itself (without such a peer:
   /// if all processes ended as they were meant to). Its own code if it ended with another, 128 + N
@@ -33,10 +35,10 @@ struct SupervisorOptions {
   std::function<void(std::string_view child, std::string_view line)> on_output =
       [](std::string_view, std::string_view) {};
   std::function<void(const ChildEvent& event)> on_event = [](const ChildEvent&) {};
-  /// A listening socket for requests (see MissionClaim): `status`, answered by a MissionStatus as
+  /// Takes requests (see MissionClaim) while run() runs: `status`, answered by a MissionStatus as
   /// JSON; `lines`, by MissionLines; `restart PROCESS`; `stop`; and, to try what the mission bears,
-  /// `kill PROCESS` and `hang PROCESS`. Negative: there are none.
-  int requests = -1;
+  /// `kill PROCESS` and `hang PROCESS`. Null: there are none.
+  RequestServer* requests = nullptr;
 };
 
 /// Runs the processes of a mission on this host: starts each when what it waits for is ready, shows

@@ -1,4 +1,5 @@
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <sys/wait.h>
@@ -40,7 +41,7 @@ class RunningMission {
     mission_.name = "requests of process " + std::to_string(::getpid());
     claim_.emplace(mission_, "");
     auto options = recorded_.options();
-    options.requests = claim_->requests();
+    options.requests = &claim_->requests();
     supervisor_.emplace(recorded_.plan, options);
     result_ = std::async(std::launch::async, [&] { return supervisor_->run(); });
   }
@@ -57,7 +58,7 @@ class RunningMission {
   }
   LaunchResult result() { return result_.get(); }
   const profile::MissionProfile& mission() const { return mission_; }
-  int listener() const { return claim_->requests(); }
+  const std::string& socket() const { return claim_->name(); }
 
  private:
   profile::MissionProfile mission_;
@@ -176,26 +177,25 @@ TEST_CASE(
     "A request whose client has gone, as after a time without an answer, is not carried out") {
   profile::MissionProfile mission;
   mission.name = "asked in vain of process " + std::to_string(::getpid());
-  const MissionClaim claim(mission, "");
+  MissionClaim claim(mission, "");
   std::vector<std::string> asked;
-  RequestServer server(claim.requests(), [&](std::string_view request) {
-    asked.emplace_back(request);
-    return std::string("ok");
-  });
-  sockaddr_un address{};
-  socklen_t size = sizeof address;
-  REQUIRE(::getsockname(claim.requests(), reinterpret_cast<sockaddr*>(&address), &size) == 0);
+  const auto serve = [&] {
+    claim.requests().serve({}, [&](std::string_view request) {
+      asked.emplace_back(request);
+      return std::string("ok");
+    });
+  };
   FileDescriptor patient(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
   {
     const FileDescriptor client(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
-    for (const auto& [socket, request] :
-         {std::pair(client.get(), "stop\n"), {patient.get(), "x\n"}}) {
-      REQUIRE(::connect(socket, reinterpret_cast<const sockaddr*>(&address), size) == 0);
-      REQUIRE(::send(socket, request, std::strlen(request), MSG_NOSIGNAL) > 0);
+    using Asked = std::pair<const FileDescriptor&, const char*>;
+    for (const auto& [socket, request] : {Asked(client, "stop\n"), Asked(patient, "x\n")}) {
+      REQUIRE(connect_to(socket, claim.name()) == Reached::Yes);
+      REQUIRE(::send(socket.get(), request, std::strlen(request), MSG_NOSIGNAL) > 0);
     }
   }
-  CHECK(test::eventually([&] { return server.serve(), !asked.empty(); }));
-  server.serve();
+  CHECK(test::eventually([&] { return serve(), !asked.empty(); }));
+  serve();
   CHECK(asked == std::vector<std::string>{"x"});
 }
 
@@ -256,12 +256,9 @@ TEST_CASE("What a launcher cannot do it refuses with the reason") {
 
 TEST_CASE("Clients that say nothing, too much, or go away do not keep others from being answered") {
   RunningMission mission({shell_child("a", kWait)});
-  sockaddr_un address{};
-  socklen_t size = sizeof address;
-  REQUIRE(::getsockname(mission.listener(), reinterpret_cast<sockaddr*>(&address), &size) == 0);
   const auto connect = [&] {
     FileDescriptor client(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
-    REQUIRE(::connect(client.get(), reinterpret_cast<const sockaddr*>(&address), size) == 0);
+    REQUIRE(connect_to(client, mission.socket()) == Reached::Yes);
     return client;
   };
   std::vector<FileDescriptor> silent;
@@ -282,19 +279,46 @@ TEST_CASE(
     return;
   }
   RunningMission mission({shell_child("a", kWait)});
-  sockaddr_un address{};
-  socklen_t size = sizeof address;
-  REQUIRE(::getsockname(mission.listener(), reinterpret_cast<sockaddr*>(&address), &size) == 0);
   Stranger stranger([&] {
     static test::LingeringConnection lingering;
     const bool refused = lingering.hand_over_to_refuser([&] {
       FileDescriptor client(::socket(AF_UNIX, SOCK_STREAM, 0));
-      ::connect(client.get(), reinterpret_cast<const sockaddr*>(&address), size);
+      connect_to(client, mission.socket());
       return client;
     });
     return refused ? nullptr : "hand over a connection and be refused";
   });
   CHECK_THAT(mission.ask("status"), Contains("\"a\""));
+}
+
+TEST_CASE("Other users' clients wake a launcher only after a pause") {
+  if (::getuid() != 0) {
+    WARN("not tested: only root can be another user");
+    return;
+  }
+  profile::MissionProfile mission;
+  mission.name = "knocked at in process " + std::to_string(::getpid());
+  MissionClaim claim(mission, "");
+  const auto knock = [&] {
+    static FileDescriptor client;
+    client = local_socket();
+    return connect_to(client, claim.name()) == Reached::Yes ? nullptr : "connect";
+  };
+  const auto wakes = [&] {
+    pollfd look{claim.requests().descriptor(), POLLIN, 0};
+    return ::poll(&look, 1, 0) == 1;
+  };
+  const auto serve = [&](Time now) { return claim.requests().serve(now, {}); };
+  const Time begin{};
+  const Stranger first(knock);
+  CHECK(wakes());
+  const auto paused_until = serve(begin);
+  REQUIRE(paused_until == begin + kAfterRefusal);
+  const Stranger second(knock);
+  CHECK_FALSE(wakes());
+  CHECK_FALSE(serve(*paused_until));
+  CHECK(wakes());
+  CHECK(serve(*paused_until) == *paused_until + kAfterRefusal);
 }
 
 TEST_CASE("Other users' full sockets with launchers' names keep nobody waiting") {
@@ -325,13 +349,10 @@ TEST_CASE("A launcher that has no room for further clients is known all the same
   profile::MissionProfile mission;
   mission.name = "asked too much of process " + std::to_string(::getpid());
   const MissionClaim claim(mission, "");
-  sockaddr_un address{};
-  socklen_t size = sizeof address;
-  REQUIRE(::getsockname(claim.requests(), reinterpret_cast<sockaddr*>(&address), &size) == 0);
   std::vector<FileDescriptor> waiting;
   do {
     waiting.emplace_back(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-  } while (::connect(waiting.back().get(), reinterpret_cast<const sockaddr*>(&address), size) == 0);
+  } while (connect_to(waiting.back(), claim.name()) == Reached::Yes);
   REQUIRE(errno == EAGAIN);
   CHECK_THROWS_WITH(MissionClaim(mission, ""),
                     Contains("by process " + std::to_string(::getpid())));
@@ -344,25 +365,21 @@ TEST_CASE("Another user's process that takes a launcher's name keeps no mission 
   }
   profile::MissionProfile mission;
   mission.name = "wanted by process " + std::to_string(::getpid());
-  const std::string name = [&] {
-    const MissionClaim claim(mission, "");
-    sockaddr_un address{};
-    socklen_t size = sizeof address;
-    ::getsockname(claim.requests(), reinterpret_cast<sockaddr*>(&address), &size);
-    return std::string(reinterpret_cast<const char*>(&address), size);
-  }();
+  const std::string name = MissionClaim(mission, "").name();
   const bool listens = GENERATE(false, true);
   CAPTURE(listens);
   const Stranger stranger([&] {
     static const FileDescriptor socket(::socket(AF_UNIX, SOCK_STREAM, 0));
-    const auto* address = reinterpret_cast<const sockaddr*>(name.data());
-    const bool taken = ::bind(socket.get(), address, static_cast<socklen_t>(name.size())) == 0 &&
+    sockaddr_un address;
+    const socklen_t size = fill_address(address, name);
+    const bool taken = ::bind(socket.get(), reinterpret_cast<sockaddr*>(&address), size) == 0 &&
                        (!listens || ::listen(socket.get(), 0) == 0);
     return taken ? nullptr : "take the name";
   });
   {
     const MissionClaim claim(mission, "");
-    CHECK(claim.requests() >= 0);
+    CHECK_FALSE(claim.name().empty());
+    CHECK(claim.name() != name);
     CHECK_THROWS_WITH(MissionClaim(mission, ""),
                       Contains("by process " + std::to_string(::getpid())));
   }
