@@ -1,7 +1,5 @@
 #pragma once
 
-#include <array>
-#include <atomic>
 #include <chrono>
 #include <mutex>
 #include <optional>
@@ -9,7 +7,9 @@
 
 #include "dds/port/allowed_sources.hpp"
 #include "packet_admission.hpp"
+#include "refusals.hpp"
 #include "rtps_message.hpp"
+#include "submessage_judge.hpp"
 
 namespace skein::dds {
 
@@ -22,12 +22,10 @@ class RtpsGuard {
   using Clock = Admission::Clock;
 
   using Refusal = dds::Refusal;
-  static constexpr std::size_t kRefusals = static_cast<std::size_t>(Refusal::Locator) + 1;
 
-  /// `place` is where the log says that something was refused: the first of each kind, the tenth,
-  /// the hundredth and so on.
+  /// `place` is where the log says that something was refused.
   RtpsGuard(Addresses addresses, std::string place, SkippedNumbers skipped)
-      : addresses_(std::move(addresses)), place_(std::move(place)), admission_(skipped) {}
+      : addresses_(std::move(addresses)), refusals_(std::move(place)), admission_(skipped) {}
 
   /// What may be handed on of a message, and what that holds.
   struct Passed {
@@ -66,36 +64,18 @@ class RtpsGuard {
   std::size_t participants() const;
 
   /// How many messages or submessages were refused, since creation.
-  std::uint64_t refused(Refusal kind) const {
-    return counts_[static_cast<std::size_t>(kind)].load(std::memory_order_relaxed);
-  }
+  std::uint64_t refused(Refusal kind) const { return refusals_.counted(kind); }
 
  private:
-  using Origin = Admission::Origin;
   using Verdict = Admission::Verdict;
 
-  /// DDS's own services.
-  enum class Service;
-  static Service service_of(const unsigned char* entity);
-
-  Verdict judge(const rtps_message::Submessage& submessage, const Origin& origin);
-  // Under the lock:
-  Verdict judge_by_kind(const rtps_message::Submessage& submessage, const Origin& origin);
-  Verdict judge_data(const rtps_message::Submessage& submessage, const Origin& origin);
-  Verdict judge_discovery(const rtps_message::Submessage& submessage,
-                          const rtps_message::Data& found, Service service, const Origin& origin);
-  bool check_locators(const rtps_message::Data& found, const Origin& origin) const;
-  Verdict judge_data_frag(const rtps_message::Submessage& submessage, const Origin& origin);
-  Verdict judge_heartbeat(const rtps_message::Submessage& submessage, const Origin& origin);
-  Verdict judge_gap(const rtps_message::Submessage& submessage, const Origin& origin);
-
-  void count(Refusal why, unsigned char kind, std::uint32_t source);
+  Verdict judge(const rtps_message::Submessage& submessage, const Admission::Origin& origin);
 
   const Addresses addresses_;
-  const std::string place_;
+  Refusals refusals_;
   mutable std::mutex mutex_;
-  Admission admission_;
-  std::array<std::atomic<std::uint64_t>, kRefusals> counts_{};
+  Admission admission_;                            // under mutex_
+  SubmessageJudge judge_{addresses_, admission_};  // under mutex_
 };
 
 }  // namespace skein::dds
