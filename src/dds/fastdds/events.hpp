@@ -26,6 +26,8 @@ class EventThread {
   ~EventThread();
   void post(std::function<void()> event);
 
+  /// A user of ticks asks for no shorter period.
+  static constexpr std::chrono::nanoseconds kShortestTick = std::chrono::milliseconds(2);
   /// The shortest period asked for counts.
   void tick_every(std::chrono::nanoseconds period);
 

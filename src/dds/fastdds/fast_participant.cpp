@@ -1,7 +1,6 @@
 #include "fast_participant.hpp"
 
 #include <fastdds/rtps/RTPSDomain.h>
-#include <fastdds/rtps/participant/ParticipantDiscoveryInfo.h>
 #include <fastdds/rtps/participant/RTPSParticipant.h>
 
 #include <algorithm>
@@ -16,13 +15,10 @@
 #include "fast_reader.hpp"
 #include "fast_writer.hpp"
 #include "liveliness.hpp"
-#include "participant_leases.hpp"
 #include "skein/error.hpp"
 
 namespace skein::dds::fastdds {
 namespace {
-
-constexpr std::chrono::nanoseconds kShortestTick = std::chrono::milliseconds(2);
 
 [[noreturn]] void throw_no_participant(const ParticipantOptions& options) {
   const std::string down = obstacle_of_this_host(options.network.interfaces, Carrier::Needed);
@@ -66,12 +62,15 @@ FastParticipant::FastParticipant(const ParticipantOptions& options)
 FastParticipant::FastParticipant(const ParticipantOptions& options, const SegmentsTurn&)
     : options_(feasible(options)),
       transport_(make_transport(options)),
+      readers_(guard()),
+      assertions_([this] { assert_liveliness(*participant_); }),
+      silence_(*transport_->state, events_),
+      discovery_(options_, *transport_->state, silence_, events_),
       events_([this] { tick(); }) {
-  transport_->state->watch.on_wake = [this] { events_.post([this] { forget_all(); }); };
   const auto attributes = participant_attributes(options_, transport_);
   require_room_for_participant(options_);
   count_participant();
-  participant_ = rtps::RTPSDomain::createParticipant(options.domain, attributes, this);
+  participant_ = rtps::RTPSDomain::createParticipant(options.domain, attributes, &discovery_);
   if (participant_ == nullptr) throw_no_participant(options);
   // Without a port Fast DDS goes on, deaf.
   const auto needed = std::ranges::count(attributes.defaultUnicastLocatorList, LOCATOR_KIND_UDPv4,
@@ -92,176 +91,20 @@ FastParticipant::~FastParticipant() {
 }
 
 void FastParticipant::end() {
-  {
-    std::lock_guard lock(asserting_);
-    assertion_period_.reset();
-  }
+  assertions_.end();
   membership_.reset();
   transport_->state->discovery.close();
   rtps::RTPSDomain::removeRTPSParticipant(participant_);
 }
 
-void FastParticipant::onParticipantDiscovery(rtps::RTPSParticipant*,
-                                             rtps::ParticipantDiscoveryInfo&& info) {
-  using Info = rtps::ParticipantDiscoveryInfo;
-  const bool present =
-      info.status == Info::DISCOVERED_PARTICIPANT || info.status == Info::CHANGED_QOS_PARTICIPANT;
-  const Guid guid = to_guid(info.info.m_guid).participant();
-  if (info.status == Info::DISCOVERED_PARTICIPANT) {
-    for (const auto& locator : info.info.metatraffic_locators.unicast) {
-      transport_->state->pace.discovered(locator.port, std::chrono::steady_clock::now());
-    }
-  }
-  if (present) {
-    guard().found(guid);
-    {
-      std::lock_guard lock(mutex_);
-      names_[guid] = info.info.m_participantName.to_string();
-    }
-    const auto& lease = info.info.m_leaseDuration;
-    follow(guid, announced_lease(lease.seconds, lease.nanosec));
-  } else {
-    guard().removed(guid);
-    {
-      std::lock_guard lock(mutex_);
-      names_.erase(guid);
-    }
-    signs().forget(guid);
-  }
-  if (info.status == Info::CHANGED_QOS_PARTICIPANT || !options_.on_participant) return;
-  {
-    std::lock_guard lock(mutex_);
-    if (present ? !present_.insert(guid).second : present_.erase(guid) == 0) return;
-  }
-  events_.post([this, guid, present] { options_.on_participant(guid, present); });
-}
-
-void FastParticipant::onWriterDiscovery(rtps::RTPSParticipant*, rtps::WriterDiscoveryInfo&& info) {
-  const Guid guid = to_guid(info.info.guid());
-  if (info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER) return lost(guid);
-  found(guid, to_endpoint(info.info));
-}
-
-void FastParticipant::onReaderDiscovery(rtps::RTPSParticipant*, rtps::ReaderDiscoveryInfo&& info) {
-  const Guid guid = to_guid(info.info.guid());
-  if (info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER) return lost(guid);
-  found(guid, to_endpoint(info.info));
-}
-
-void FastParticipant::found(const Guid& guid, Endpoint endpoint) {
-  guard().endpoint_found(guid);
-  {
-    std::lock_guard lock(mutex_);
-    const auto name = names_.find(guid.participant());
-    if (name != names_.end()) endpoint.participant = name->second;
-  }
-  endpoints_.found(guid, std::move(endpoint));
-}
-
-void FastParticipant::lost(const Guid& endpoint) {
-  guard().endpoint_removed(endpoint);
-  endpoints_.lost(endpoint);
-}
-
-void FastParticipant::follow(const Guid& participant,
-                             std::optional<std::chrono::nanoseconds> lease) {
-  signs().follow(participant, lease, std::chrono::steady_clock::now());
-  if (lease) watch_each(*lease);
-}
-
-/// Often enough to see in time that `lease` ran out.
-void FastParticipant::watch_each(std::chrono::nanoseconds lease) {
-  constexpr int kChecksInALease = 20;
-  const auto period = std::max(lease / kChecksInALease, kShortestTick);
-  {
-    std::lock_guard lock(mutex_);
-    watch_period_ = std::min(watch_period_, period);
-  }
-  events_.tick_every(period);
-}
-
-void FastParticipant::watch_liveliness(std::weak_ptr<EndpointEvents> reader,
-                                       std::chrono::nanoseconds lease) {
-  {
-    std::lock_guard lock(mutex_);
-    watched_.push_back({std::move(reader), lease});
-  }
-  watch_each(lease);
+void FastParticipant::tick() {
+  assertions_.assert_if_due(std::chrono::steady_clock::now());
+  silence_.check(std::chrono::steady_clock::now());
+  readers_.drop_incomplete(std::chrono::steady_clock::now());
 }
 
 void FastParticipant::assert_liveliness_for(std::chrono::nanoseconds lease) {
-  const auto period = lease * 2 / 5;
-  {
-    std::lock_guard lock(asserting_);
-    assertion_period_ = std::min(assertion_period_.value_or(period), period);
-  }
-  events_.tick_every(std::max(period / 4, kShortestTick));
-}
-
-void FastParticipant::assert_liveliness_if_due() {
-  const auto now = std::chrono::steady_clock::now();
-  std::lock_guard lock(asserting_);
-  if (!assertion_period_ || now - last_assertion_ < *assertion_period_) return;
-  last_assertion_ = now;
-  assert_liveliness(*participant_);
-}
-
-void FastParticipant::tick() {
-  assert_liveliness_if_due();
-  check_leases();
-  check_liveliness();
-  drop_incomplete();
-}
-
-void FastParticipant::remove(FastReader& reader) {
-  all_readers_.erase(&reader);
-  guard().reader_gone(rtps_message::entity_of(reader.guid()));
-}
-
-/// Fast DDS keeps the memory of a sample in fragments for as long as its writer is there.
-void FastParticipant::drop_incomplete() {
-  for (const auto& sample : guard().give_up(std::chrono::steady_clock::now())) {
-    Guid writer = sample.participant;
-    rtps_message::put32(writer.bytes.data() + rtps_message::kPrefixSize, sample.writer, false);
-    {
-      std::lock_guard lock(readers_);
-      for (FastReader* const reader : all_readers_) reader->drop_incomplete(writer, sample.number);
-    }
-    guard().dropped(sample);
-  }
-}
-
-void FastParticipant::check_leases() {
-  std::chrono::nanoseconds period;
-  {
-    std::lock_guard lock(mutex_);
-    period = watch_period_;
-  }
-  for (const Guid& gone : signs().watch(std::chrono::steady_clock::now(), period)) {
-    transport_->state->discovery.say_farewell(gone);
-  }
-}
-
-void FastParticipant::forget_all() {
-  for (const Guid& each : signs().drop_all()) transport_->state->discovery.say_farewell(each);
-  transport_->state->watch.awake(std::chrono::steady_clock::now());
-}
-
-void FastParticipant::check_liveliness() {
-  std::vector<Watched> watched;
-  {
-    std::lock_guard lock(mutex_);
-    std::erase_if(watched_, [](const Watched& each) { return each.reader.expired(); });
-    watched = watched_;
-  }
-  const auto now = std::chrono::steady_clock::now();
-  for (const Watched& each : watched) {
-    const auto reader = each.reader.lock();
-    if (!reader) continue;
-    for (const Guid& writer : reader->peers()) {
-      reader->alive(writer, signs().alive(writer.participant(), each.lease, now));
-    }
-  }
+  events_.tick_every(std::max(assertions_.begin(lease), EventThread::kShortestTick));
 }
 
 int FastParticipant::acquire_topic(const Topic& topic) {

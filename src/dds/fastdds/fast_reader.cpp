@@ -21,14 +21,16 @@ FastReader::FastReader(FastParticipant& participant, const Topic& topic, const Q
       queue_(topic.name, qos, std::move(listener.find_key),
              std::move(listener.on_deadline_missed)) {
   auto attributes = reader_attributes(topic, qos);
-  std::lock_guard lock(participant.readers());
+  std::lock_guard lock(participant.readers().creation());
   reader_ = rtps::RTPSDomain::createRTPSReader(participant_.rtps_participant(), attributes,
                                                payloads_, &history_, this);
   if (reader_ == nullptr) {
     throw Internal("topic '" + topic_.name + "': Fast DDS cannot create a reader");
   }
   guid_ = to_guid(reader_->getGuid());
-  if (qos.liveliness_lease) participant_.watch_liveliness(events_, *qos.liveliness_lease);
+  if (qos.liveliness_lease) {
+    participant_.silence().watch_liveliness(events_, *qos.liveliness_lease);
+  }
   if (EndpointWatch::is_needed(qos, events_->tells_incompatible())) {
     peers_.emplace(participant_.endpoints(),
                    Endpoint{Side::Reader, topic.name, topic.type_name, qos},
@@ -36,15 +38,15 @@ FastReader::FastReader(FastParticipant& participant, const Topic& topic, const Q
   }
   participant_.rtps_participant()->registerReader(reader_, topic_attributes(topic),
                                                   reader_qos(qos));
-  participant_.add(*this);
+  participant_.readers().add(*this);
 }
 
 /// The listener stays until the RTPS reader is gone: other threads of Fast DDS's look whether there
 /// is one, and call it, without a lock. When the reader has been removed none of them is left.
 FastReader::~FastReader() {
   {
-    std::lock_guard lock(participant_.readers());
-    participant_.remove(*this);
+    std::lock_guard lock(participant_.readers().creation());
+    participant_.readers().remove(*this);
     rtps::RTPSDomain::removeRTPSReader(reader_);
   }
   events_->close();

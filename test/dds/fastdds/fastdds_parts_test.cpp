@@ -1,12 +1,15 @@
 // The parts of the Fast DDS back end that can be seen to work without a network.
 #include <catch2/catch.hpp>
+#include <future>
 
 #include "core/threads/stall_watch.hpp"
 #include "dds/fastdds/acknack_repair.hpp"
 #include "dds/fastdds/announcement_pace.hpp"
 #include "dds/fastdds/events.hpp"
 #include "dds/fastdds/fast_lease_watch.hpp"
+#include "dds/fastdds/fast_silence.hpp"
 #include "dds/fastdds/forgetting.hpp"
+#include "dds/fastdds/liveliness_assertions.hpp"
 #include "dds/fastdds/participant_leases.hpp"
 #include "dds/fastdds/received_payloads.hpp"
 #include "dds/fastdds/suspend_detector.hpp"
@@ -357,6 +360,63 @@ TEST_CASE("while this process did not run, nobody's lease runs out") {
   CHECK(signs.alive(participant(1), 60ms, now));
   for (int i = 0; i < 3; ++i) CHECK(signs.watch(now += 10ms, 10ms).empty());
   CHECK(signs.watch(now += 20ms, 10ms).size() == 1);
+}
+
+TEST_CASE(
+    "a reader hears once of silence and once of return; a stop of its own process is neither") {
+  int silent = 0;
+  int returned = 0;
+  EventThread events([] {});
+  const auto all_told = [&] {
+    std::promise<void> last;
+    events.post([&] { last.set_value(); });
+    last.get_future().wait();
+  };
+  StartupTransportDescriptor::State transport(1s, 250ms, {});
+  FastSilence silence(transport, events);
+  const auto reader = std::make_shared<EndpointEvents>(
+      events,
+      EndpointListener{{}, [&](const Guid&, bool alive) { ++(alive ? returned : silent); }, {}});
+  reader->matched(participant(1), true);
+  FastSilence::Time now{1h};
+  silence.watch_liveliness(reader, 100ms);
+  silence.follow(participant(1), 10s, now);
+  silence.check(now);
+  for (int i = 0; i < 10; ++i) silence.check(now += 5ms);
+  silence.check(now += 1h);  // counts as 10 ms
+  for (int i = 0; i < 8; ++i) silence.check(now += 5ms);
+  all_told();
+  CHECK(silent == 0);
+  silence.check(now += 5ms);
+  silence.check(now += 1h);
+  for (int i = 0; i < 8; ++i) silence.check(now += 5ms);
+  all_told();
+  CHECK(silent == 1);
+  CHECK(returned == 0);
+  transport.signs.heard(participant(1), now);
+  silence.check(now += 5ms);
+  all_told();
+  CHECK(silent == 1);
+  CHECK(returned == 1);
+}
+
+TEST_CASE(
+    "liveliness is asserted five times in two of the shortest lease, and never after the end") {
+  int asserted = 0;
+  LivelinessAssertions assertions([&] { ++asserted; });
+  Instant now{1h};
+  assertions.assert_if_due(now);
+  CHECK(asserted == 0);
+  CHECK(assertions.begin(1s) == 100ms);
+  for (int i = 0; i < 20; ++i) assertions.assert_if_due(now += 100ms);
+  CHECK(asserted == 5);
+  CHECK(assertions.begin(100ms) == 10ms);
+  CHECK(assertions.begin(10s) == 1s);
+  for (int i = 0; i < 20; ++i) assertions.assert_if_due(now += 10ms);
+  CHECK(asserted == 10);
+  assertions.end();
+  assertions.assert_if_due(now += 1h);
+  CHECK(asserted == 10);
 }
 
 TEST_CASE(
