@@ -13,13 +13,14 @@
 
 namespace skein::dds::loopback {
 
-/// The callbacks of a network, in the order of what they tell. One runs at a time, without the
-/// network's lock, which is held in all members otherwise.
+/// The callbacks of a network, in the order of what they tell. One runs at a time, outside the
+/// network's lock; members are called with it held.
 class CallbackQueue {
  public:
   using Lock = std::unique_lock<std::mutex>;
 
-  /// Clears `queued` just before the callback runs.
+  /// Clears `queued`, which must live as long as the callback, just before that runs; not if it is
+  /// dropped.
   void post(const void* target, Action callback, bool* queued = nullptr);
 
   /// Posts a call of one of the endpoint's listener functions, which may be empty.

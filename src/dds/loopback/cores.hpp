@@ -53,7 +53,7 @@ struct EndpointCore {
   std::set<Guid> refused;  // whose incompatibility has been told
 };
 
-/// Whether one of the endpoints is of the one participant, and one of the other.
+/// Whether one endpoint belongs to each of the two participants.
 inline bool between(const EndpointCore& writer, const EndpointCore& reader,
                     const ParticipantCore& one, const ParticipantCore& other) {
   const ParticipantCore* writing = writer.participant.get();

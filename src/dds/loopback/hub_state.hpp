@@ -30,7 +30,7 @@ using MatchId = std::pair<Guid, Guid>;  // writer, reader
 struct HubState {
   /// Runs the action after the delay, under the lock, and then the callbacks.
   const std::function<void(Duration delay, std::function<void()> action)> later;
-  std::condition_variable acknowledged{};  // notified when a writer waits for fewer samples
+  std::condition_variable acknowledged{};  // notified when fewer samples wait for this
   Topology topology{};
   std::map<MatchId, Match> matches{};
   CallbackQueue callbacks{};

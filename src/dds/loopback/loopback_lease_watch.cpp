@@ -33,8 +33,9 @@ void LeaseWatch::hear(ParticipantCore& observer, const std::shared_ptr<Participa
     tell_presence(observer, observed->guid, true);
     matching_.match_all(observer, *observed);
   }
+  matching_.forget_removed(observer, *observed);
   for (auto& [id, match] : state_.matches) {
-    if (match.alive || match.writer->participant != observed) continue;
+    if (match.alive || !match.reader_side || match.writer->participant != observed) continue;
     if (match.reader->participant.get() != &observer) continue;
     match.alive = true;
     state_.callbacks.tell(match.reader, &ReaderListener::on_liveliness, id.first, true);

@@ -138,6 +138,18 @@ void Matching::remove(EndpointCore& endpoint) {
   drop_unused_links();
 }
 
+void Matching::forget_removed(const ParticipantCore& observer, const ParticipantCore& observed) {
+  for (auto& [id, match] : state_.matches) {
+    const ParticipantCore* const writing = match.writer->participant.get();
+    const ParticipantCore* const reading = match.reader->participant.get();
+    if (match.writer->closed && writing == &observed && reading == &observer)
+      unmatch_reader_side(match);
+    if (match.reader->closed && reading == &observed && writing == &observer)
+      unmatch_writer_side(match);
+  }
+  drop_unused_links();
+}
+
 std::vector<Guid> Matching::matched(const Guid& endpoint) const {
   std::vector<Guid> others;
   for (const auto& [id, match] : state_.matches) {

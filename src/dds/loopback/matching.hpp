@@ -16,6 +16,9 @@ class Matching {
   void add(const std::shared_ptr<WriterCore>& writer);
   void add(const std::shared_ptr<ReaderCore>& reader);
   void remove(EndpointCore& endpoint);
+  /// Ends the matches with endpoints of `observed` that were removed while `observer` did not hear
+  /// it.
+  void forget_removed(const ParticipantCore& observer, const ParticipantCore& observed);
 
   /// One participant has found the other.
   void match_all(const ParticipantCore& one, const ParticipantCore& other);

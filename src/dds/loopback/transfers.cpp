@@ -114,13 +114,13 @@ void Transfers::arrive(const MatchId& id, const MessagePtr& message) {
 /// Drops what was overtaken or has been delivered.
 void Transfers::accept(Match& match, const MessagePtr& message) {
   if (message->sequence <= match.delivered) return;
-  match.delivered = message->sequence;
   ReaderCore& reader = *match.reader;
   const Qos& offered = match.writer->qos;
   const bool stored =
       reader.queue.store({Payload(message->cdr, MessageHolder{message}), message->state,
                           message->key, message->writer, message->written},
                          {offered.strength, offered.lifespan});
+  match.delivered = message->sequence;
   if (!stored || reader.told) return;
   reader.told = true;
   state_.callbacks.post(

@@ -8,7 +8,8 @@
 
 namespace skein::dds::loopback {
 
-/// How samples travel: a network judges each, a reliable writer repeats it until it has arrived.
+/// How samples travel: the network judges each; a reliable writer repeats a sample until that has
+/// arrived.
 class Transfers {
  public:
   explicit Transfers(HubState& state) : state_(state) {}

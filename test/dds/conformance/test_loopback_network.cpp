@@ -136,6 +136,22 @@ TEST_CASE("what was written during a short cut arrives with heal") {
   CHECK(pair.events == "+lost alive ");
 }
 
+TEST_CASE("an endpoint that was removed during a cut is told nothing, and is forgotten with heal") {
+  Qos qos;
+  qos.liveliness_lease = 200ms;
+  Pair pair(qos);
+  pair.network.separate(pair.one.participant->guid(), pair.two.participant->guid());
+  pair.clock.advance(300ms);
+  const std::string removed = GENERATE("reader", "writer");
+  if (removed == "reader") pair.reader.reset();
+  if (removed == "writer") pair.writer.reset();
+  CHECK(pair.events == "+lost ");
+  pair.network.heal();
+  if (removed == "reader") CHECK(pair.writer->matched_readers().empty());
+  if (removed == "writer") CHECK(pair.reader->matched_writers().empty());
+  CHECK(pair.events == (removed == "reader" ? "+lost " : "+lost -"));
+}
+
 TEST_CASE_METHOD(Pair, "a paused participant loses nobody, but is lost and found again") {
   network.pause(two.participant->guid());
   clock.advance(1s);

@@ -1,10 +1,9 @@
-#include "dds/loopback/hub.hpp"
-
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
 #include <future>
 
+#include "skein/loopback.hpp"
 #include "test/tools/eventually.hpp"
 #include "test/tools/threads.hpp"
 
@@ -26,13 +25,13 @@ struct Full {
     two = network.vendor()->create_participant(options);
     Qos qos;
     qos.max_samples = 1;
-    qos.max_blocking = 10min;
+    qos.max_blocking = 1min;
     writer = one->create_writer(kTopic, qos);
     reader = two->create_reader(kTopic, qos);
     network.pause(two->guid());
     writer->write(kSample);
   }
-  /// Runs `call` on a thread, and returns when that waits.
+  /// Runs `call` on a thread, and returns when that sleeps.
   template <class Call>
   static auto start(Call call) {
     std::promise<pid_t> thread;
@@ -62,11 +61,13 @@ struct Full {
 TEST_CASE_METHOD(Full, "a write that waits for room goes on") {
   auto written = start([this] { writer->write(kSample); });
   make_room();
+  REQUIRE(written.wait_for(test::kPatience) == std::future_status::ready);
   CHECK_NOTHROW(written.get());
 }
 
 TEST_CASE_METHOD(Full, "a wait for acknowledgments ends") {
-  auto acknowledged = start([this] { return writer->wait_for_acknowledgments(10min); });
+  auto acknowledged = start([this] { return writer->wait_for_acknowledgments(1min); });
   make_room();
+  REQUIRE(acknowledged.wait_for(test::kPatience) == std::future_status::ready);
   CHECK(acknowledged.get());
 }
