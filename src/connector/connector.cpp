@@ -284,9 +284,9 @@ std::shared_ptr<Channel> Connector::open(const InterfaceInfo& interface,
   const auto channel = std::make_shared<FailoverChannel>(
       await_connection(parts_->broker, query, deadline, connect), connect, options.hedge_after);
   connections_->add(channel);
-  channel->attach(std::make_shared<brokerless_discovery::Broker::Registration>(
+  channel->changes().follow(std::make_shared<brokerless_discovery::Broker::Registration>(
       parts_->broker.observe([weak = std::weak_ptr(channel)](const Change&) {
-        if (const auto follows = weak.lock()) follows->on_change();
+        if (const auto follows = weak.lock()) follows->changes().on_change();
       })));
   return channel;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <memory>
 #include <vector>
@@ -28,6 +29,10 @@ struct ProviderQuery {
   std::vector<Guid> excluded{};  ///< In no case.
   /// Until a provider appears, and takes the connection; otherwise each that stands is asked once.
   bool wait = true;
+
+  bool excludes(const Guid& provider) const {
+    return std::find(excluded.begin(), excluded.end(), provider) != excluded.end();
+  }
 };
 
 /// No provider stands that may be asked: who may wait waits until that changes.

@@ -1,6 +1,6 @@
 #include "retry_rule.hpp"
 
-#include <optional>
+#include <string>
 #include <utility>
 
 #include "skein/error.hpp"
@@ -20,10 +20,33 @@ std::optional<ErrorCode> code_of(const std::exception_ptr& error) {
   }
 }
 
+// The same error with more words; what is no Error stays as it is.
+std::exception_ptr with_words(const std::exception_ptr& error, const std::string& words) {
+  try {
+    try {
+      std::rethrow_exception(error);
+    } catch (const Error& failure) {
+      throw_error(failure.code(), failure.what() + words);
+    }
+  } catch (...) {
+    return std::current_exception();
+  }
+}
+
+std::exception_ptr waited_in_vain(const std::exception_ptr& why, const std::exception_ptr& lack) {
+  try {
+    std::rethrow_exception(lack);
+  } catch (const std::exception& error) {
+    return with_words(
+        why, std::string("; no provider came back while the call waited: ") + error.what());
+  }
+}
+
 }  // namespace
 
 bool RetryRule::admit(std::exception_ptr& error, const Asked& failed, Instant now,
                       bool others_run) {
+  if (!budget_) return false;
   const auto code = code_of(error);
   if (!code) return false;
   const bool refused = is_refusal(*code);
@@ -31,14 +54,18 @@ bool RetryRule::admit(std::exception_ptr& error, const Asked& failed, Instant no
   failures_.push_back({failed, refused});
   if (failures_.size() >= kMaxFailures || now >= deadline_) return false;
   if (others_run) return true;
-  if (!refused) return admit_loss(error);
-  if (repeats_ == 0 && *code != ErrorCode::Overloaded) {
-    budget_->owe();
-  } else if (!budget_->take()) {
-    return false;
+  if (!refused) {
+    if (!admit_loss(error)) return false;
+  } else {
+    if (repeats_ == 0 && *code != ErrorCode::Overloaded) {
+      budget_->owe();
+    } else if (!budget_->take()) {
+      return false;
+    }
+    ++refused_;
   }
   ++repeats_;
-  ++refused_;
+  why_ = error;
   return true;
 }
 
@@ -51,8 +78,14 @@ bool RetryRule::admit_loss(std::exception_ptr& error) {
     return false;
   }
   budget_->owe();
-  ++repeats_;
   return true;
+}
+
+std::exception_ptr RetryRule::none_found(const std::exception_ptr& lack, bool waited) {
+  const std::exception_ptr why = std::exchange(why_, nullptr);
+  if (!why) return lack;
+  budget_->give_back(1);
+  return waited ? waited_in_vain(why, lack) : why;
 }
 
 ProviderQuery wanted_after(const RetryRule::Failures& failures, Instant deadline) {
@@ -66,16 +99,12 @@ ProviderQuery wanted_after(const RetryRule::Failures& failures, Instant deadline
   return wanted;
 }
 
-std::exception_ptr with_words(const std::exception_ptr& error, const std::string& words) {
-  try {
-    try {
-      std::rethrow_exception(error);
-    } catch (const Error& failure) {
-      throw_error(failure.code(), failure.what() + words);
-    }
-  } catch (...) {
-    return std::current_exception();
-  }
+ProviderQuery wanted_beside(const std::vector<Guid>& tried, const RetryRule::Failures& failures,
+                            Instant deadline) {
+  ProviderQuery wanted = wanted_after(failures, deadline);
+  wanted.wait = false;
+  wanted.excluded.insert(wanted.excluded.end(), tried.begin(), tried.end());
+  return wanted;
 }
 
 }  // namespace skein::connector

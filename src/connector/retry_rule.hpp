@@ -3,8 +3,7 @@
 #include <atomic>
 #include <exception>
 #include <memory>
-#include <string>
-#include <utility>
+#include <optional>
 #include <vector>
 
 #include "provider_connection.hpp"
@@ -18,12 +17,32 @@ struct Asked {
   std::weak_ptr<Channel> channel;
 };
 
-/// How often, and by whom, one call to an idempotent operation may still be tried. admit() is
-/// called by one thread at a time.
+/// Decides whether, when and with whom one call is tried again. FailoverChannel carries that out
+/// for a caller that waits, WaitingCall and RetryingCall for one that does not.
+///
+/// - Not sent: the connection ended before. The call is made elsewhere at once, whatever it does,
+///   unless the client's own side has ended.
+/// - Sent, and not repeatable: whatever ends it is the answer.
+/// - Sent, and repeatable: admit() after a failure, hedge() while the first provider is slow.
+/// - No provider stands that may be asked: the call waits for one until its deadline, unless a
+///   provider that stands has failed it (see wanted_after()). none_found() is how that ends.
+///
+/// Pure: time is an argument. One thread at a time uses it; answered() may come from any.
 class RetryRule {
  public:
-  RetryRule(Instant deadline, std::shared_ptr<RetryBudget> budget)
-      : deadline_(deadline), budget_(std::move(budget)) {
+  /// Whether the operation may run twice.
+  static bool repeats(const OperationInfo& operation) {
+    return operation.idempotent && !operation.oneway;
+  }
+  /// Whether a call that was not sent is made elsewhere.
+  static bool moves_unsent(bool side_has_ended) { return !side_has_ended; }
+
+  RetryRule(const OperationInfo& operation, Instant deadline,
+            const std::shared_ptr<RetryBudget>& budget, const std::optional<Duration>& hedge_after)
+      : deadline_(deadline) {
+    if (!repeats(operation)) return;
+    budget_ = budget;
+    hedge_after_ = hedge_after;
     budget_->earn();
   }
 
@@ -34,15 +53,21 @@ class RetryRule {
   /// further repeats, within the budget.
   bool admit(std::exception_ptr& error, const Asked& failed, Instant now, bool others_run = false);
 
+  /// How long the first provider has the call alone; nothing if no second one is asked.
+  const std::optional<Duration>& hedge_after() const noexcept { return hedge_after_; }
   /// Whether it may be made at a second provider while the first one has it.
   bool hedge() noexcept { return budget_->take(); }
-  /// Nobody was there to make the repeat, or the hedge, that was just admitted.
-  void not_made() noexcept { budget_->give_back(1); }
+  /// No second provider was there to take it.
+  void not_hedged() noexcept { budget_->give_back(1); }
 
   /// The call was answered: what had been refused was no load, and is not paid for.
   void answered() noexcept {
     if (refused_ > 0) budget_->give_back(refused_.exchange(0));
   }
+
+  /// How a call ends for which no provider was found, `lack` being why: with its last provider's
+  /// failure, if it had one. The text says so if it `waited` for another.
+  std::exception_ptr none_found(const std::exception_ptr& lack, bool waited);
 
   struct Failure {
     Asked asked;
@@ -55,9 +80,11 @@ class RetryRule {
   bool admit_loss(std::exception_ptr& error);
 
   const Instant deadline_;
-  std::shared_ptr<RetryBudget> budget_;
+  std::shared_ptr<RetryBudget> budget_;  // null: not repeatable
+  std::optional<Duration> hedge_after_;
   Failures failures_;
-  bool lost_ = false;  // and repeated
+  std::exception_ptr why_;  // the failure after which it is to be repeated
+  bool lost_ = false;       // and repeated
   int repeats_ = 0;
   std::atomic<int> refused_{0};  // and paid for
 };
@@ -68,7 +95,8 @@ class RetryRule {
 /// available. Not under a lock that a call's end takes: it may be the last to hold a connection.
 ProviderQuery wanted_after(const RetryRule::Failures& failures, Instant deadline);
 
-/// The same error with more words; what is no Error stays as it is.
-std::exception_ptr with_words(const std::exception_ptr& error, const std::string& words);
+/// As wanted_after(), for a hedge: it goes to none that was `tried`, and waits for nobody.
+ProviderQuery wanted_beside(const std::vector<Guid>& tried, const RetryRule::Failures& failures,
+                            Instant deadline);
 
 }  // namespace skein::connector

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "failover_channel.hpp"
 #include "skein/detail/call_memory.hpp"
@@ -13,28 +14,17 @@ void RetryingCall::start(const std::shared_ptr<FailoverChannel>& channel,
                          const std::shared_ptr<PendingCall>& call, const void* in) {
   const auto moving = make_shared_in_call_memory<RetryingCall>(channel, call, in);
   call->set_canceller([moving] { moving->cancel(); });
-  while (const auto connection = channel->ready(moving->wanted())) {
+  while (const auto connection = channel->pool().ready(moving->wanted())) {
     if (moving->try_at(*channel, *connection)) return;
   }
-  moving->seek(nullptr);
+  moving->seek();
 }
 
 RetryingCall::RetryingCall(const std::shared_ptr<FailoverChannel>& channel,
                            std::shared_ptr<PendingCall> call, const void* in)
-    : WaitingCall(channel, std::move(call), in),
-      hedged_(channel->hedge_after().has_value()),
-      retries_(call_->deadline(), channel->budget()) {}
+    : WaitingCall(channel, std::move(call), in), hedged_(rule_.hedge_after().has_value()) {}
 
 RetryingCall::~RetryingCall() { clock_.cancel(hedge_timer_); }
-
-ProviderQuery RetryingCall::wanted() {
-  RetryRule::Failures failures;
-  {
-    std::lock_guard lock(mutex_);
-    failures = retries_.failures();
-  }
-  return wanted_after(failures, call_->deadline());
-}
 
 // A call that is over is not sent.
 bool RetryingCall::try_at(const FailoverChannel& channel, const ProviderConnection& connection) {
@@ -49,7 +39,7 @@ bool RetryingCall::try_at(const FailoverChannel& channel, const ProviderConnecti
   {
     std::lock_guard lock(mutex_);
     attempts_.push_back(attempt);
-    if (hedged_ && attempts_.size() == 1) hedge_later(*channel.hedge_after());
+    if (hedged_ && attempts_.size() == 1) hedge_later(*rule_.hedge_after());
     cancelled = cancelled_;
   }
   if (cancelled) attempt->cancel();
@@ -59,7 +49,7 @@ bool RetryingCall::try_at(const FailoverChannel& channel, const ProviderConnecti
 void RetryingCall::ended(Attempt& attempt) {
   auto error = attempt.take_error();
   if (!error) {
-    retries_.answered();
+    rule_.answered();
     if (!call_->claim()) return;
     if (hedged_) call_->operation().out->assign(call_->out(), attempt.out());
     call_->finish();
@@ -71,10 +61,10 @@ void RetryingCall::ended(Attempt& attempt) {
     std::lock_guard lock(mutex_);
     if (cancelled_) return;
     const bool others = others_run();
-    again = retries_.admit(error, attempt.asked, clock_.now(), others);
+    again = rule_.admit(error, attempt.asked, clock_.now(), others);
     if (again && others) return;
   }
-  if (again) return seek(error);
+  if (again) return seek();
   call_->fail(std::move(error));
   cancel();
 }
@@ -96,18 +86,20 @@ void RetryingCall::hedge_later(Duration delay) {
 void RetryingCall::hedge() {
   const auto channel = channel_.lock();
   if (!channel || call_->finished()) return;
-  ProviderQuery wanted = this->wanted();
-  wanted.wait = false;
+  RetryRule::Failures failures;
+  std::vector<Guid> tried;
   {
     std::lock_guard lock(mutex_);
-    if (!retries_.hedge()) return;
-    for (const auto& attempt : attempts_) wanted.excluded.push_back(attempt->asked.provider);
+    if (!rule_.hedge()) return;
+    failures = rule_.failures();
+    for (const auto& attempt : attempts_) tried.push_back(attempt->asked.provider);
   }
   try {
-    if (try_at(*channel, channel->acquire_now(wanted))) return;
+    const ProviderQuery wanted = wanted_beside(tried, failures, call_->deadline());
+    if (try_at(*channel, channel->reconnector().acquire(wanted))) return;
   } catch (const Error&) {
   }
-  retries_.not_made();
+  rule_.not_hedged();
 }
 
 void RetryingCall::cancel() {

@@ -1,11 +1,9 @@
 #pragma once
 
 #include <memory>
-#include <mutex>
 #include <utility>
 #include <vector>
 
-#include "retry_rule.hpp"
 #include "skein/detail/call_memory.hpp"
 #include "waiting_call.hpp"
 
@@ -45,9 +43,7 @@ class RetryingCall final : public WaitingCall {
  private:
   using Attempts = std::pmr::vector<std::shared_ptr<Attempt>>;
 
-  ProviderQuery wanted() override;
   bool try_at(const FailoverChannel& channel, const ProviderConnection& connection) override;
-  void not_made() override { retries_.not_made(); }
   std::shared_ptr<RetryingCall> shared() {
     return std::static_pointer_cast<RetryingCall>(shared_from_this());
   }
@@ -58,8 +54,7 @@ class RetryingCall final : public WaitingCall {
   void cancel();
 
   const bool hedged_;  // then two tries may be made at once, and each has an out struct of its own
-  std::mutex mutex_;   // guards what follows
-  RetryRule retries_;
+  // The lock guards what follows, too.
   Attempts attempts_{&call_memory()};
   TimerId hedge_timer_ = 0;
   bool cancelled_ = false;

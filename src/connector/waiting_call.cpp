@@ -4,25 +4,16 @@
 #include <utility>
 
 #include "failover_channel.hpp"
-#include "retry_rule.hpp"
 #include "skein/detail/call_memory.hpp"
 #include "skein/error.hpp"
 
 namespace skein::connector {
-std::exception_ptr waited_in_vain(const std::exception_ptr& why, const std::exception_ptr& lack) {
-  try {
-    std::rethrow_exception(lack);
-  } catch (const std::exception& error) {
-    return with_words(
-        why, std::string("; no provider came back while the call waited: ") + error.what());
-  }
-}
 
 void WaitingCall::start(const std::shared_ptr<FailoverChannel>& channel,
                         const std::shared_ptr<PendingCall>& call, const void* in) {
   const auto waiting = make_shared_in_call_memory<WaitingCall>(channel, call, in);
   waiting->own();
-  waiting->seek(nullptr);
+  waiting->seek();
 }
 
 WaitingCall::WaitingCall(const std::shared_ptr<FailoverChannel>& channel,
@@ -31,9 +22,19 @@ WaitingCall::WaitingCall(const std::shared_ptr<FailoverChannel>& channel,
       clock_(channel->clock()),
       continuations_(channel->continuations()),
       call_(std::move(call)),
-      in_(copy_of(*call_->operation().in, in)) {}
+      in_(copy_of(*call_->operation().in, in)),
+      rule_(channel->rule_for(call_->operation(), call_->deadline())) {}
 
 WaitingCall::~WaitingCall() { clock_.cancel(deadline_timer_); }
+
+ProviderQuery WaitingCall::wanted() {
+  RetryRule::Failures failures;
+  {
+    std::lock_guard lock(mutex_);
+    failures = rule_.failures();
+  }
+  return wanted_after(failures, call_->deadline());
+}
 
 bool WaitingCall::try_at(const FailoverChannel& channel, const ProviderConnection& connection) {
   if (channel.sent(*connection.channel, call_, in_.get())) return true;
@@ -45,10 +46,9 @@ void WaitingCall::own() {
   call_->set_canceller([self = shared_from_this()] {});
 }
 
-void WaitingCall::seek(const std::exception_ptr& why) {
+void WaitingCall::seek() {
   {
-    std::lock_guard lock(waiting_);
-    why_ = why;
+    std::lock_guard lock(mutex_);
     lack_ = nullptr;
     watch_deadline();
   }
@@ -67,7 +67,7 @@ void WaitingCall::watch_deadline() {
 void WaitingCall::expire() {
   std::exception_ptr lack;
   {
-    std::lock_guard lock(waiting_);
+    std::lock_guard lock(mutex_);
     lack = std::exchange(lack_, nullptr);
   }
   if (lack) return give_up(lack, true);
@@ -81,17 +81,17 @@ void WaitingCall::look() {
   if (!channel) return call_->cancel();
   if (call_->finished()) return;
   bool waits = note_lack(nullptr);
-  const std::uint64_t seen = channel->changes();
+  const std::uint64_t seen = channel->changes().count();
   std::exception_ptr lack;
   try {
-    channel->refuse_if_closed();
-    while (!try_at(*channel, channel->acquire_now(wanted()))) {
+    channel->pool().refuse_if_closed();
+    while (!try_at(*channel, channel->reconnector().acquire(wanted()))) {
     }
     return leave_deadline();
   } catch (const NoProvider&) {
     lack = std::current_exception();
     note_lack(lack);
-    if (channel->tell_of_change(seen, weak_from_this())) return;
+    if (channel->changes().tell(seen, weak_from_this())) return;
     waits = true;
   } catch (...) {
     lack = std::current_exception();
@@ -101,7 +101,7 @@ void WaitingCall::look() {
 
 // Whether it was waiting.
 bool WaitingCall::note_lack(const std::exception_ptr& lack) {
-  std::lock_guard lock(waiting_);
+  std::lock_guard lock(mutex_);
   return std::exchange(lack_, lack) != nullptr;
 }
 
@@ -109,24 +109,19 @@ bool WaitingCall::note_lack(const std::exception_ptr& lack) {
 void WaitingCall::leave_deadline() {
   TimerId timer = 0;
   {
-    std::lock_guard lock(waiting_);
+    std::lock_guard lock(mutex_);
     timer = std::exchange(deadline_timer_, 0);
   }
   clock_.cancel(timer);
 }
 
 void WaitingCall::give_up(const std::exception_ptr& lack, bool waited) {
-  std::exception_ptr why;
+  std::exception_ptr error;
   {
-    std::lock_guard lock(waiting_);
-    why = std::exchange(why_, nullptr);
+    std::lock_guard lock(mutex_);
+    error = rule_.none_found(lack, waited);
   }
-  if (!why) {
-    call_->fail(lack);
-    return;
-  }
-  not_made();
-  call_->fail(waited ? waited_in_vain(why, lack) : why);
+  call_->fail(std::move(error));
 }
 
 }  // namespace skein::connector

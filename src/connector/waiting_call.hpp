@@ -4,7 +4,7 @@
 #include <memory>
 #include <mutex>
 
-#include "provider_connection.hpp"
+#include "retry_rule.hpp"
 #include "skein/detail/channel.hpp"
 
 namespace skein::connector {
@@ -26,21 +26,17 @@ class WaitingCall : public std::enable_shared_from_this<WaitingCall> {
   WaitingCall(const WaitingCall&) = delete;
   WaitingCall& operator=(const WaitingCall&) = delete;
 
-  /// Posts a look. `why` is what the last provider failed with, null if there was none.
-  void seek(const std::exception_ptr& why);
+  /// Posts a look.
+  void seek();
 
   /// Looks for a provider now, and waits for the next change where none stands.
   void look();
 
-  bool finished() const { return call_->finished(); }
-
  protected:
-  virtual ProviderQuery wanted() { return {call_->deadline()}; }
+  ProviderQuery wanted();
   /// Hands the call to that provider. Returns false if the connection had ended, so that the
   /// provider has not got it.
   virtual bool try_at(const FailoverChannel& channel, const ProviderConnection& connection);
-  /// No provider was found.
-  virtual void not_made() {}
 
   // Weak: the last to let go of a call may be a vendor's thread, which must not end a connection.
   const std::weak_ptr<FailoverChannel> channel_;
@@ -48,6 +44,9 @@ class WaitingCall : public std::enable_shared_from_this<WaitingCall> {
   Executor& continuations_;
   const std::shared_ptr<PendingCall> call_;
   const std::shared_ptr<void> in_;
+
+  std::mutex mutex_;  // guards the members that are not const
+  RetryRule rule_;
 
  private:
   void own();
@@ -57,13 +56,8 @@ class WaitingCall : public std::enable_shared_from_this<WaitingCall> {
   void expire();
   void give_up(const std::exception_ptr& lack, bool waited);
 
-  std::mutex waiting_;  // guards what follows
-  std::exception_ptr why_;
   std::exception_ptr lack_;  // while it waits: why no provider was found
   TimerId deadline_timer_ = 0;
 };
-
-/// The error of a call that a provider failed with `why`, and for which no other one came: `lack`.
-std::exception_ptr waited_in_vain(const std::exception_ptr& why, const std::exception_ptr& lack);
 
 }  // namespace skein::connector

@@ -3,7 +3,7 @@
 
 #include "brokerless_discovery/broker.hpp"
 #include "echo_service.hpp"
-#include "fake_provider.hpp"
+#include "failover/fake_provider.hpp"
 #include "pairing.hpp"
 #include "skein/gather.hpp"
 #include "test/tools/eventually.hpp"

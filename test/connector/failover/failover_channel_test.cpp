@@ -53,7 +53,7 @@ struct World {
   void restart(int number) {
     gone.push_back(std::exchange(providers[static_cast<std::size_t>(number - 1)],
                                  std::make_shared<FakeChannel>(clock, continuations)));
-    channel->on_change();
+    channel->changes().on_change();
     continuations.run_all();
   }
 
