@@ -38,6 +38,7 @@ bool wanted(const ServiceDescription& description, const Query& query) {
 // No component declares an attribute of these names: they would be no names of the dictionary.
 constexpr std::string_view kLeaving = "skein:leaving";
 constexpr std::string_view kSharedMemoryCalls = "skein:shared_memory_calls";
+constexpr std::string_view kWithLoans = "loans";
 
 bool has_attribute(const ServiceDescription& description, std::string_view name) noexcept {
   return std::any_of(description.attributes.begin(), description.attributes.end(),
@@ -75,8 +76,15 @@ bool offers_shared_memory_calls(const ServiceDescription& description) noexcept 
   return has_attribute(description, kSharedMemoryCalls);
 }
 
-void offer_shared_memory_calls(ServiceDescription& description) {
-  description.attributes.push_back({std::string(kSharedMemoryCalls), "true"});
+bool takes_loans(const ServiceDescription& description) noexcept {
+  return std::ranges::any_of(description.attributes, [](const auto& attribute) {
+    return attribute.name == kSharedMemoryCalls && attribute.value == kWithLoans;
+  });
+}
+
+void offer_shared_memory_calls(ServiceDescription& description, bool with_loans) {
+  description.attributes.push_back(
+      {std::string(kSharedMemoryCalls), with_loans ? std::string(kWithLoans) : "true"});
 }
 
 Table::Changes Table::on_description(ServiceDescription description, const Guid& writer) {

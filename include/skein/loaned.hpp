@@ -10,20 +10,18 @@
 
 namespace skein {
 
-/// A value in memory that other processes of this host can read. Where a call goes through shared
-/// memory, a parameter that is one, as in `survey.store(*image)`, is not copied: the implementation
-/// reads it where it lies. One parameter of a call is lent, the first, and eight different ones at
-/// a time to one provider. Everything else is copied: further parameters, values of less than
-/// 4 KiB, and those of calls over DDS, of asynchronous calls to idempotent operations, and of
-/// asynchronous calls that wait for another provider. More than 256 MiB go nowhere.
+/// A large value that a provider in another process of this host may read where it lies. Passed as
+/// in `survey.store(*image)`, it reaches the provider unchanged, lent or copied; only the time
+/// differs. The fastest call is one that waits for its answer, with one such parameter of 4 KiB or
+/// more, through shared memory, to a provider in C++.
+///
+/// Leave it as it is from a call's begin to its answer. If a call ends without one, in_use() tells
+/// whether the provider may still read it. It may be destroyed at any time: readers keep the
+/// memory. Not thread-safe, as any value.
 ///
 /// T is an array or a struct of numbers and octets alone (see Lendable), so that whatever is
-/// written to it while it is read is a value, too. All are zero at first.
-///
-/// Making one takes system calls, and its pages are new to both processes: keep it for many calls.
-/// What is in it must stay as it is from a call's begin to its answer. Where a call ends without
-/// one, in_use() tells whether the implementation may still read it. It may be destroyed at any
-/// time: readers keep the memory. Not thread-safe, as any value.
+/// written to it while it is read is a value, too. All are zero at first. Making one takes system
+/// calls, and its pages are new to both processes: keep it for many calls.
 ///
 /// ```cpp
 /// auto archive = station.connect<survey::IArchive>();

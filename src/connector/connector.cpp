@@ -176,6 +176,7 @@ std::shared_ptr<rpc::RemoteChannel> open_remote(const Connector::Parts& parts,
     const Instant begin = parts.clock->now();
     auto shared = options;
     shared.transport = "shared memory";
+    shared.lends = brokerless_discovery::takes_loans(provider);
     shared.gone = "its process ended, or it closed the connection";
     const auto reached = std::make_shared<bool>(false);
     shared.begun = [reached, begun = options.begun](const auto& channel) {

@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -29,6 +30,7 @@
 #include "entity/namesakes.hpp"
 #include "entity/periodic_topic.hpp"
 #include "entity/self_report.hpp"
+#include "idl/types/dynamic_support.hpp"
 #include "rpc/server/remote_server.hpp"
 #include "rpc/service/call_journal.hpp"
 #include "rpc/service/local_directory.hpp"
@@ -56,6 +58,14 @@ constexpr std::chrono::milliseconds kLeastToAsk{100};
 
 constexpr std::chrono::milliseconds kStatisticsInterval{1000};
 constexpr std::chrono::milliseconds kLogInterval{200};
+
+// A provider in another language decodes by its description of the types, and so gets all in the
+// message.
+bool reads_in_place(const InterfaceInfo& interface) {
+  return std::ranges::none_of(interface.operations, [](const OperationInfo& operation) {
+    return idl::DynamicSupport::of(*operation.in) != nullptr;
+  });
+}
 
 ServiceDescription describe(const InterfaceInfo& interface, const Guid& provider,
                             const ServiceOptions& options) {
@@ -529,7 +539,9 @@ Guid Entity::add(std::shared_ptr<Servant> servant, const ServiceOptions& options
   ServiceDescription description = describe(interface, id, options);
   description.entity = name;
   description.owner = owner;
-  if (provided->same_host_server) brokerless_discovery::offer_shared_memory_calls(description);
+  if (provided->same_host_server) {
+    brokerless_discovery::offer_shared_memory_calls(description, reads_in_place(interface));
+  }
   provided->registration = state_->broker.add_service(std::move(description));
   std::lock_guard lock(state_->mutex);
   state_->provided.emplace(id, std::move(provided));

@@ -31,7 +31,8 @@ RemoteChannel::State::State(calls::ClientPort& port_, Executor& control_,
       clock(*owned_clock),
       address(address_),
       options(std::move(options_)),
-      path(std::make_shared<RequestPath>(address, clock, options.peer, options.journal)),
+      path(std::make_shared<RequestPath>(address, clock, options.peer, options.lends,
+                                         options.journal)),
       refused(std::make_shared<RefusedReplies>(address.service, options.peer)) {}
 
 void RemoteChannel::State::create_endpoints() {

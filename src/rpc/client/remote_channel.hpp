@@ -20,6 +20,8 @@ class RemoteChannel final : public Channel, public std::enable_shared_from_this<
     std::string peer;               ///< For messages.
     std::string transport = "DDS";  ///< See ConnectionInfo, as the next.
     std::string not_faster{};
+    /// Whether the provider reads parameters that are lent to it; otherwise all are copied.
+    bool lends = false;
     /// The text for a provider whose endpoint is gone, until a better reason is known.
     std::string gone = "it left, or it was not heard of for longer than its lease";
     /// The provider's participant, which alone is believed. Nil: whoever serves the address is.

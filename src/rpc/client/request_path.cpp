@@ -21,11 +21,12 @@ constexpr std::chrono::milliseconds kToTellOfRoom{20};
 
 }  // namespace
 
-RequestPath::RequestPath(calls::Address address, Clock& clock, std::string peer,
+RequestPath::RequestPath(calls::Address address, Clock& clock, std::string peer, bool lends,
                          std::shared_ptr<CallJournal> journal)
     : address_(std::move(address)),
       clock_(clock),
       peer_(std::move(peer)),
+      lends_(lends),
       journal_(std::move(journal)) {}
 
 void RequestPath::open(std::unique_ptr<calls::Sender> sender) {
@@ -73,7 +74,9 @@ bool RequestPath::send(const PendingCall& call, std::uint64_t number, const void
   thread_local Bytes message;
   std::shared_ptr<LoanMemory> lent;
   std::size_t position = 0;
-  {
+  if (!lends_) {
+    put_request(message, call, number, in);
+  } else {
     idl::LeavingOut leaving_out;
     put_request(message, call, number, in);
     lent = leaving_out.memory();

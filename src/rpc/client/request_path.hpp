@@ -17,8 +17,8 @@ namespace skein::rpc {
 /// The way of a client's requests to its provider. Thread-safe.
 class RequestPath {
  public:
-  /// `peer` is for messages; `journal` may be null.
-  RequestPath(calls::Address address, Clock& clock, std::string peer,
+  /// `peer` is for messages; `journal` may be null. Without `lends` all parameters are copied.
+  RequestPath(calls::Address address, Clock& clock, std::string peer, bool lends,
               std::shared_ptr<CallJournal> journal);
 
   /// Call it once, before send().
@@ -54,6 +54,7 @@ class RequestPath {
   const calls::Address address_;
   Clock& clock_;
   const std::string peer_;
+  const bool lends_;
   const std::shared_ptr<CallJournal> journal_;
   Guid client_;
   std::atomic<bool> given_up_{false};

@@ -11,7 +11,7 @@ import threading
 import unittest
 
 import skein
-from tools import CLIENT, INSIDE, PATIENCE, PROVIDES, SERVER, Buoy, Peer, entity, eventually, harbour, odd
+from tools import CLIENT, INSIDE, PATIENCE, PROVIDES, SERVER, Buoy, Peer, archive, entity, eventually, harbour, odd
 
 try:
     import numpy
@@ -232,6 +232,15 @@ class Processes(unittest.TestCase):
         with Peer.in_c(SERVER, "provide") as peer:
             peer.expect("provides")
             self.assertEqual(self.entity("caller", CLIENT).connect(harbour.IBuoy, timeout=PATIENCE).greet("you"), "you")
+
+    def test_what_cxx_lends_to_python_is_copied_and_arrives_unchanged(self):
+        class Archive(archive.IArchive):
+            def weigh(self, name, chart, factor):
+                return sum(chart.soundings) * chart.scale * factor, chart.drawn_at
+
+        self.entity("archive", SERVER).provide(Archive())
+        with Peer(os.environ["SKEIN_LENDING_CALLER"], CLIENT) as peer:
+            peer.expect("unchanged")
 
     def test_the_death_of_a_provider_ends_its_calls(self):
         with Peer.python(PROVIDES) as peer:

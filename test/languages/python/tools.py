@@ -12,6 +12,7 @@ import skein
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 harbour = skein.load("../c/buoy.idl").harbour
+archive = skein.load("../c/archive.idl").harbour
 odd = skein.load("odd.idl")
 SERVER, CLIENT = os.environ.get("SKEIN_PAIRING", "loopback:loopback").split(":")
 INSIDE = "loopback" in (SERVER, CLIENT)  # all entities are in one process

@@ -162,6 +162,7 @@ TEST_CASE("a provider says in its description whether it is called through share
   const auto found = broker.find_service(broker.query("test::Echo"));
   REQUIRE(found.size() == 1);
   CHECK(brokerless_discovery::offers_shared_memory_calls(*found.front()) == by_server);
+  CHECK(brokerless_discovery::takes_loans(*found.front()) == by_server);
 }
 
 TEST_CASE("a provider that only says that it is called through shared memory is called over DDS",
