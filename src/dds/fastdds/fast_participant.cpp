@@ -82,7 +82,13 @@ FastParticipant::FastParticipant(const ParticipantOptions& options, const Segmen
   guid_ = to_guid(participant_->getGuid()).participant();
   transport_->state->discovery.opened(discovery_mutex(*participant_));
   transport_->state->open = true;
-  if (options_.network.multicast_discovery) membership_.emplace(options_);
+  if (!options_.network.multicast_discovery) return;
+  try {
+    membership_.emplace(options_);
+  } catch (...) {
+    end();  // Fast DDS's threads call this object's parts until then
+    throw;
+  }
 }
 
 FastParticipant::~FastParticipant() {

@@ -12,8 +12,8 @@ namespace skein::dds::fastdds {
 /// When a participant tells the others that its writers live. Thread-safe.
 class LivelinessAssertions {
  public:
-  /// `assert` tells them.
-  explicit LivelinessAssertions(std::function<void()> assert) : assert_(std::move(assert)) {}
+  /// `tell` tells them.
+  explicit LivelinessAssertions(std::function<void()> tell) : tell_(std::move(tell)) {}
 
   /// Asserts from now on often enough for `lease`, too. Returns how often assert_if_due() is to be
   /// called for that.
@@ -28,7 +28,7 @@ class LivelinessAssertions {
     const std::lock_guard lock(mutex_);
     if (!period_ || now - last_ < *period_) return;
     last_ = now;
-    assert_();
+    tell_();
   }
 
   /// Waits for an assertion that is being sent; none is sent afterwards.
@@ -38,7 +38,7 @@ class LivelinessAssertions {
   }
 
  private:
-  const std::function<void()> assert_;
+  const std::function<void()> tell_;
   std::mutex mutex_;  // held while an assertion is sent
   std::optional<std::chrono::nanoseconds> period_;
   std::chrono::steady_clock::time_point last_;

@@ -10,7 +10,7 @@ namespace skein::dds {
 
 /// Decides whether a submessage may be handed on: by its form, its kind, and by what was received
 /// of its sender before. May change what the submessage says into something as true and smaller.
-/// Pure: time is an argument. Not thread-safe.
+/// Reads no clock and takes no lock. Not thread-safe.
 class SubmessageJudge {
  public:
   using Origin = Admission::Origin;
@@ -20,8 +20,8 @@ class SubmessageJudge {
   SubmessageJudge(const Addresses& addresses, Admission& admission)
       : addresses_(addresses), admission_(admission) {}
 
-  /// The verdict on a submessage whose sender does not matter (PAD, INFO_TS, INFO_DST); nothing of
-  /// other kinds.
+  /// The verdict on a submessage whose sender does not matter (PAD, INFO_TS, INFO_DST); no verdict
+  /// on other kinds, which judge() takes.
   static std::optional<Verdict> judge_form(const rtps_message::Submessage& submessage);
 
   /// The verdict on a submessage of any other kind.

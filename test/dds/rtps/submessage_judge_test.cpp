@@ -38,13 +38,20 @@ TEST_CASE("only PAD, INFO_TS and INFO_DST are judged by their form alone") {
     return SubmessageJudge::judge_form(
         *dds::rtps_message::submessage_at(octets.data(), octets.size(), 20));
   };
-  const SubmessageJudge::Verdict sound;
-  CHECK(*by_form(0x01, OctetWriter().zeros(4)) == sound);
-  CHECK(*by_form(0x09, OctetWriter().zeros(8)) == sound);
-  CHECK(*by_form(0x09, OctetWriter().zeros(4)) == Refusal::Form);
-  CHECK(*by_form(0x0e, OctetWriter().zeros(12)) == sound);
-  CHECK(*by_form(0x0e, OctetWriter().zeros(8)) == Refusal::Form);
-  CHECK_FALSE(by_form(kHeartbeat, heartbeat(kWriter, 1, 5)).has_value());
+  using Judged = std::optional<SubmessageJudge::Verdict>;
+  const Judged sound{SubmessageJudge::Verdict{}};
+  const Judged refused{SubmessageJudge::Verdict{Refusal::Form}};
+  REQUIRE(sound.has_value());
+  CHECK(by_form(0x01, OctetWriter().zeros(4)) == sound);
+  CHECK(by_form(0x09, OctetWriter().zeros(8)) == sound);
+  CHECK(by_form(0x09, OctetWriter().zeros(4)) == refused);
+  CHECK(by_form(0x0e, OctetWriter().zeros(12)) == sound);
+  CHECK(by_form(0x0e, OctetWriter().zeros(8)) == refused);
+  for (unsigned kind = 0; kind < 0x100; ++kind) {
+    CAPTURE(kind);
+    const bool of_form = kind == 0x01 || kind == 0x09 || kind == 0x0e;
+    CHECK(by_form(kind, OctetWriter().zeros(16)).has_value() == of_form);
+  }
 }
 
 TEST_CASE_METHOD(Judging, "a participant that has not announced itself is a stranger") {
