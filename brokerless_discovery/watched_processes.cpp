@@ -1,5 +1,7 @@
 #include "brokerless_discovery/watched_processes.hpp"
 
+#include <sys/socket.h>
+
 #include <iterator>
 #include <utility>
 

@@ -13,16 +13,19 @@
 
 namespace skein::brokerless_discovery {
 
-/// The processes that this one watches, by their addresses. Runs no action itself, so that its
-/// owner's lock is free then. Not thread-safe.
+/// The processes that this one watches, by their addresses. Its owner
+/// runs the actions, after it has given back its lock. Not thread-safe.
 class WatchedProcesses {
  public:
   using Action = std::function<void()>;
 
   /// `epoll` outlives this object.
   explicit WatchedProcesses(Epoll& epoll) : epoll_(epoll) {}
+  WatchedProcesses(const WatchedProcesses&) = delete;
+  WatchedProcesses& operator=(const WatchedProcesses&) = delete;
 
-  /// Returns true if nobody listens at `address`: `action` is due. Moves from it to keep it.
+  /// Returns true if nobody listens at `address`: `action` is due. Otherwise it is
+  /// moved from, unless this watcher has one already or there is no room.
   [[nodiscard]] bool watch(const std::string& address, const void* watcher, Action& action);
   void unwatch(const std::string& address, const void* watcher);
   void unwatch(const void* watcher);

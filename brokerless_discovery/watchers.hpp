@@ -15,6 +15,8 @@ class Watchers {
  public:
   /// `epoll` outlives this object.
   explicit Watchers(Epoll& epoll) : epoll_(epoll) {}
+  Watchers(const Watchers&) = delete;
+  Watchers& operator=(const Watchers&) = delete;
 
   /// Greets the process, and moves from the socket, if it may watch this one.
   void greet(FileDescriptor& socket, pid_t process);

@@ -64,6 +64,7 @@ TEST_CASE("a hang-up is reported once, also if a forked child has a copy of the 
   auto [own, other] = connection();
   watchers.greet(own, getpid());
   const pid_t child = fork();
+  REQUIRE(child >= 0);
   if (child == 0) {
     while (true) pause();
   }

@@ -132,6 +132,7 @@ TEST_CASE("a server without a free descriptor leaves its clients waiting, and tr
 TEST_CASE("nothing is reported of a closed name of which a forked child has the socket") {
   Served served;
   const pid_t child = fork();
+  REQUIRE(child >= 0);
   if (child == 0) {
     while (true) pause();
   }

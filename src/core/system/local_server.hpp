@@ -30,13 +30,17 @@ class LocalServer {
   /// `epoll` outlives this object.
   LocalServer(Epoll& epoll, Trusts trusts) : epoll_(epoll), trusts_(std::move(trusts)) {}
 
+  LocalServer(const LocalServer&) = delete;
+  LocalServer& operator=(const LocalServer&) = delete;
+
   /// Listens also at `name`, and moves from `socket`. Returns false, with errno, if the name is
   /// taken or the kernel refuses.
   bool open(ListeningSocket& socket, const std::string& name, int backlog = SOMAXCONN);
   void close(const std::string& name);
   bool listens_at(const std::string& name) const;
 
-  /// Accepts clients if the event is one of this server's; returns false if not.
+  /// Accepts clients if the event is one of this server's; returns false if not. A pause counts
+  /// from `now`.
   bool handle(std::uint64_t event, Time now, const Take& take);
 
   /// Ends a pause that is over. Returns the end of one that is not: call it again then.

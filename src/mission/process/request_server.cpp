@@ -5,7 +5,9 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <utility>
+#include <vector>
 
 #include "core/system/trusted_users.hpp"
 #include "wake_up.hpp"
@@ -14,7 +16,8 @@ namespace skein::launch {
 
 namespace {
 
-constexpr int kWaitingClients = 8;
+constexpr int kWaitingClients =
+    128;  // some stay free for own clients while strangers are kept waiting
 
 bool has_gone(int client) {
   pollfd end{client, 0, 0};
@@ -51,11 +54,15 @@ bool RequestServer::open(ListeningSocket& socket, const std::string& name) {
 }
 
 std::optional<RequestServer::Time> RequestServer::serve(Time now, const Answer& answer) {
-  using std::chrono::milliseconds;
-  for (const auto& event : epoll_.wait(milliseconds(0))) {
-    const auto accept = [this](FileDescriptor& socket, const ucred&) { take(socket); };
-    if (server_.handle(event.id, now, accept)) continue;
-    const auto found = clients_.find(event.id);
+  std::vector<std::uint64_t> due;
+  const auto accept = [&](FileDescriptor& socket, const ucred&) {
+    // The request of a new client is often there already.
+    if (const auto id = take(socket)) due.push_back(id);
+  };
+  for (const auto& event : epoll_.wait(std::chrono::milliseconds(0)))
+    if (!server_.handle(event.id, now, accept)) due.push_back(event.id);
+  for (const std::uint64_t id : due) {
+    const auto found = clients_.find(id);
     if (found == clients_.end()) continue;
     auto& [socket, request] = found->second;
     if (hear_client(socket.get(), request, answer)) drop(found);
@@ -63,11 +70,12 @@ std::optional<RequestServer::Time> RequestServer::serve(Time now, const Answer& 
   return server_.resume(now);
 }
 
-void RequestServer::take(FileDescriptor& socket) {
+std::uint64_t RequestServer::take(FileDescriptor& socket) {
   const std::uint64_t id = epoll_.add(socket, EPOLLIN);
-  if (id == 0) return;
+  if (id == 0) return 0;
   if (clients_.size() == kMostClients) drop(clients_.begin());
   clients_.emplace(id, Client{std::move(socket), ""});
+  return id;
 }
 
 void RequestServer::drop(Clients::iterator client) {

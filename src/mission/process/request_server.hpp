@@ -42,7 +42,7 @@ class RequestServer {
   };
   using Clients = std::map<std::uint64_t, Client>;  // the oldest first
 
-  void take(FileDescriptor& socket);
+  std::uint64_t take(FileDescriptor& socket);  // the client's id; 0 if the kernel refuses it
   void drop(Clients::iterator client);
 
   Epoll epoll_;

@@ -23,6 +23,7 @@
 #include "shell_mission.hpp"
 #include "skein/detail/type_support.hpp"
 #include "skein/error.hpp"
+#include "skein/guid.hpp"
 #include "skein/mission_status.idl.hpp"
 #include "test/tools/eventually.hpp"
 #include "test/tools/lingering_connection.hpp"
@@ -343,6 +344,24 @@ TEST_CASE("Other users' full sockets with launchers' names keep nobody waiting")
   const auto answers = ask_launchers("status");
   CHECK(std::chrono::steady_clock::now() - begin < 10s);
   CHECK(std::ranges::count(answers, "", &LauncherAnswer::failure) > 0);
+}
+
+TEST_CASE("Requests that came before their clients were let in are answered at once") {
+  RequestServer server;
+  const std::string name = "skein-test/" + Guid::random().hex();
+  ListeningSocket socket(local_socket());
+  REQUIRE(server.open(socket, name));
+  std::vector<Contact> clients;
+  for (std::size_t i = 0; i < RequestServer::kMostClients; ++i) {
+    clients.push_back(reach(name, [](uid_t) { return true; }));
+    REQUIRE(::send(clients.back().socket.get(), "what\n", 5, MSG_NOSIGNAL) == 5);
+  }
+  server.serve({}, [](std::string_view request) { return std::string(request) + "!"; });
+  for (const Contact& client : clients) {
+    std::array<char, 16> text{};
+    CHECK(::recv(client.socket.get(), text.data(), text.size(), MSG_DONTWAIT) == 5);
+    CHECK(std::string(text.data()) == "what!");
+  }
 }
 
 TEST_CASE("A launcher that has no room for further clients is known all the same") {
