@@ -4,7 +4,6 @@
 
 #include "broker_state.hpp"
 #include "brokerless_discovery/versions.hpp"
-#include "core/clock_wait.hpp"
 #include "core/printable.hpp"
 #include "core/threads/sole_owner.hpp"
 #include "skein/detail/codec.hpp"
@@ -85,50 +84,13 @@ dds::Qos Broker::State::description_qos(std::vector<std::string> partitions,
 
 std::string Broker::State::owner_partition(const std::string& owner) { return "managed/" + owner; }
 
-Table::Found Broker::State::await(const Query& query, Instant deadline) {
-  std::unique_lock lock(mutex);
-  Table::Found found;
-  wait_until(clock, deadline, lock, changed, [&] {
-    found = table.find(query);
-    return leaving || !found.empty();
-  });
-  return found;
-}
-
-// One task for all changes that wait: a flood of them does not fill the executor, where one that
-// finds no room would be lost.
-void Broker::State::wake_teller() {
-  const bool posted = control.post([state = weak_from_this()] {
-    if (const auto self = state.lock()) self->tell();
-  });
-  if (posted) return;
-  std::lock_guard lock(mutex);
-  telling = false;  // the next change tries again
-}
-
-void Broker::State::tell() {
-  std::vector<std::shared_ptr<Observer>> told;
-  Table::Changes changes;
-  {
-    std::lock_guard lock(mutex);
-    for (const auto& [id, observer] : observers) told.push_back(observer);
-    changes.swap(untold);
-    telling = false;
-  }
-  for (const Change& change : changes) {
-    for (const auto& observer : told) {
-      std::lock_guard lock(observer->telling);
-      if (!observer->gone) observer->tell(change);
-    }
-  }
-}
-
 Broker::Broker(dds::Participant& participant, Clock& clock, Executor& control, ProcessWatch& watch,
                Options options) {
   check_name("a system", options.system);
   check_name("an entity", options.entity);
   state_ = std::make_shared<State>(participant, clock, control, watch, std::move(options));
   State& state = *state_;
+  state.itself = state_;
   std::lock_guard lock(state.writing);
   state.reader = state.make_reader();
   state.last_tick = clock.now();
@@ -140,12 +102,10 @@ Broker::~Broker() {
   // They end here: the participant's end does not wait for whoever lets go of the state last.
   std::unique_ptr<dds::Reader> reader;
   std::map<std::string, std::unique_ptr<dds::Writer>> writers;
-  std::string address;
   {
     std::lock_guard lock(state_->writing);
     state_->closed = true;
     state_->own.clear();
-    address = state_->address;
     timer = state_->tick_timer;
     reader.swap(state_->reader);
     writers.swap(state_->writers);
@@ -153,8 +113,7 @@ Broker::~Broker() {
   state_->clock.cancel(timer);
   reader.reset();
   writers.clear();
-  state_->watch.unwatch(state_.get());
-  state_->watch.close(address);
+  state_->processes.close();
   await_sole_owner(state_);
 }
 
@@ -171,8 +130,8 @@ Guid Broker::new_provider() {
 }
 
 Broker::Registration Broker::add_service(ServiceDescription description) {
-  description.host = state_->host;
-  description.process = state_->watched_at();
+  description.host = state_->processes.host();
+  description.process = state_->processes.own_address();
   description.pid = static_cast<std::uint32_t>(getpid());
   description.vendor = state_->options.vendor;
   if (description.system.empty()) description.system = state_->options.system;
@@ -180,7 +139,7 @@ Broker::Registration Broker::add_service(ServiceDescription description) {
   check_own(description, state_->participant.guid());
   const Guid provider{description.provider};
   // Its own services a peer knows at once, whether or not its writer and its reader have matched.
-  state_->apply([&](Table& table) { return table.on_description(description, Guid{}); });
+  state_->table.apply([&](Table& table) { return table.on_description(description, Guid{}); });
   state_->publish(std::move(description));
   return state_->registration([provider](State& state) { state.withdraw(provider); });
 }
@@ -188,8 +147,7 @@ Broker::Registration Broker::add_service(ServiceDescription description) {
 void Broker::leave(const Guid& provider) { state_->leave(provider); }
 
 bool Broker::is_leaving(const Guid& provider) const {
-  std::lock_guard lock(state_->mutex);
-  return state_->table.is_leaving(provider);
+  return state_->table.look([&](const Table& table) { return table.is_leaving(provider); });
 }
 
 Query Broker::query(const std::string& name) const {
@@ -202,49 +160,37 @@ Query Broker::query(const std::string& name) const {
 }
 
 Table::Found Broker::find_service(const Query& query) const {
-  std::lock_guard lock(state_->mutex);
-  return state_->table.find(query);
+  return state_->table.look([&](const Table& table) { return table.find(query); });
 }
 
 Table::Found Broker::await_service(const Query& query, Instant deadline) const {
   const Instant now = state_->clock.now();
   const Duration asking = std::min<Duration>(kAskingPatience, (deadline - now) / 2);
-  Table::Found found = state_->await(query, query.client ? deadline - asking : deadline);
+  const LockedTable& table = state_->table;
+  Table::Found found = table.await(query, query.client ? deadline - asking : deadline);
   if (!found.empty()) return found;
-  const Query explained = with_differences(*this, query, deadline, [&] {
-    std::lock_guard lock(state_->mutex);
-    return state_->leaving || !state_->table.find(query).empty();
-  });
-  found = state_->await(explained, deadline);
+  const Query explained = with_differences(
+      *this, query, deadline, [&] { return table.waits_ended() || !find_service(query).empty(); });
+  found = table.await(explained, deadline);
   if (!found.empty()) return found;
-  std::lock_guard lock(state_->mutex);
-  throw Unavailable(state_->leaving ? "the entity that looked for it has ended"
-                                    : state_->table.explain(explained));
+  throw Unavailable(table.waits_ended()
+                        ? "the entity that looked for it has ended"
+                        : table.look([&](const Table& all) { return all.explain(explained); }));
 }
 
 bool Broker::await_change(std::uint64_t seen, Instant deadline) const {
-  std::unique_lock lock(state_->mutex);
-  const bool changed = wait_until(state_->clock, deadline, lock, state_->changed,
-                                  [&] { return state_->leaving || state_->generation != seen; });
-  if (state_->leaving) throw Unavailable("the entity that waited for a service has ended");
-  return changed;
+  return state_->table.await_change(seen, deadline);
 }
 
 std::vector<Absence> Broker::absent(std::string_view service) const {
-  std::lock_guard lock(state_->mutex);
-  return state_->absences.of(service);
+  return state_->table.absent(service);
 }
 
-void Broker::end_waits() {
-  std::lock_guard lock(state_->mutex);
-  state_->leaving = true;
-  state_->changed.notify_all();
-}
+void Broker::end_waits() { state_->table.end_waits(); }
 
 std::string Broker::explain(const Query& query) const {
   const Query explained = with_differences(*this, query, state_->clock.now(), [] { return true; });
-  std::lock_guard lock(state_->mutex);
-  return state_->table.explain(explained);
+  return state_->table.look([&](const Table& table) { return table.explain(explained); });
 }
 
 std::string Broker::difference(const InterfaceInfo& client,
@@ -253,42 +199,31 @@ std::string Broker::difference(const InterfaceInfo& client,
 }
 
 bool Broker::knows(const Guid& provider) const {
-  std::lock_guard lock(state_->mutex);
-  return state_->table.knows(provider);
+  return state_->table.look([&](const Table& table) { return table.knows(provider); });
 }
 
 std::optional<Guid> Broker::participant_of(const Guid& provider) const {
-  std::lock_guard lock(state_->mutex);
-  const auto writer = state_->table.writer_of(provider);
+  const auto writer =
+      state_->table.look([&](const Table& table) { return table.writer_of(provider); });
   if (!writer) return std::nullopt;
   return writer->is_nil() ? state_->participant.guid() : writer->participant();
 }
 
 std::uint64_t Broker::refused(Refusal why) const {
-  std::lock_guard lock(state_->mutex);
   return state_->refused[static_cast<std::size_t>(why)];
 }
 
 Table::Found Broker::all() const {
-  std::lock_guard lock(state_->mutex);
-  return state_->table.all();
+  return state_->table.look([](const Table& table) { return table.all(); });
 }
 
-std::uint64_t Broker::generation() const noexcept { return state_->generation; }
+std::uint64_t Broker::generation() const noexcept { return state_->table.generation(); }
 
 Broker::Registration Broker::observe(std::function<void(const Change&)> observer) {
-  const auto added = std::make_shared<State::Observer>(std::move(observer));
-  std::lock_guard lock(state_->mutex);
-  const std::uint64_t id = ++state_->last_observer;
-  state_->observers[id] = added;
-  return state_->registration([id, added](State& state) {
-    {
-      std::lock_guard lock(state.mutex);
-      state.observers.erase(id);
-    }
-    std::lock_guard lock(added->telling);
-    added->gone = true;
-  });
+  return Registration(
+      [state = std::weak_ptr(state_), added = state_->observers.add(std::move(observer))] {
+        if (const auto self = state.lock()) self->observers.remove(added);
+      });
 }
 
 }  // namespace skein::brokerless_discovery

@@ -14,24 +14,23 @@ constexpr std::uint32_t kMaxWaiting = 4 * Room::kEntriesOfAll;
 void Broker::State::on_sample(const dds::Sample& sample) {
   try {
     if (sample.state == dds::InstanceState::Disposed) {
-      return apply([&](Table& table) { return table.on_withdrawn(sample.key, sample.writer); });
+      return processes.settle(
+          table.apply([&](Table& table) { return table.on_withdrawn(sample.key, sample.writer); }));
     }
     auto description = read(sample);
-    const bool watched = may_be_watched(description);
-    const std::string process = description.process;
-    if (watched) watch_process(process);
+    const std::string process = processes.watch(description);
     const bool own = sample.writer.participant() == participant.guid();
     try {
-      apply([&](Table& table) {
+      table.apply([&](Table& table) {
         // R24: withdrawn, and this is its description on a late way back.
         if (own && !table.knows(sample.key)) return Table::Changes{};
         return table.on_description(std::move(description), sample.writer);
       });
     } catch (const std::exception&) {
-      if (watched) settle_watch(process);
+      processes.settle(process);
       throw;
     }
-    if (watched) settle_watch(process);
+    processes.settle(process);
   } catch (const Refused& refusal) {
     refuse(refusal.why, sample.writer, refusal.what());
   } catch (const std::exception& error) {
@@ -58,8 +57,7 @@ ServiceDescription Broker::State::read(const dds::Sample& sample) {
 }
 
 void Broker::State::refuse(Refusal why, const Guid& writer, const std::string& text) {
-  std::lock_guard lock(mutex);
-  if (++refused[static_cast<std::size_t>(why)] > 1) return;
+  if (refused[static_cast<std::size_t>(why)]++ > 0) return;
   log(LogLevel::Warning, "broker",
       "refused a service description by participant " + writer.participant().hex().substr(0, 24) +
           ": " + text + "; further ones like it are counted and not logged");
@@ -75,7 +73,7 @@ void Broker::State::tell_unheard(const dds::Incompatibility& why) {
 
 void Broker::State::on_writer(const Guid& writer, bool matched) {
   if (!matched) {
-    apply([&](Table& table) { return table.on_writer_gone(writer); });
+    processes.settle(table.apply([&](Table& table) { return table.on_writer_gone(writer); }));
     return renewals.lost(writer);
   }
   if (!renewals.matched(writer)) return;
@@ -85,12 +83,8 @@ void Broker::State::on_writer(const Guid& writer, bool matched) {
 }
 
 void Broker::State::renew_if_due() {
-  bool has_suspects;
-  {
-    std::lock_guard lock(mutex);
-    has_suspects = table.has_suspects();
-  }
-  if (renewals.take_due(clock.now(), has_suspects)) renew_reader();
+  const bool suspects = table.look([](const Table& table) { return table.has_suspects(); });
+  if (renewals.take_due(clock.now(), suspects)) renew_reader();
 }
 
 // R17: a writer that comes back need not know that it was gone, and some vendors do not deliver
@@ -115,7 +109,7 @@ std::unique_ptr<dds::Reader> Broker::State::make_reader() {
   };
   listener.on_matched = [this](const Guid& writer, bool matched) { on_writer(writer, matched); };
   listener.on_liveliness = [this](const Guid& writer, bool alive) {
-    apply([&](Table& table) { return table.on_writer_alive(writer, alive); });
+    table.apply([&](Table& table) { return table.on_writer_alive(writer, alive); });
   };
   listener.on_incompatible = [this](const dds::Incompatibility& why) { tell_unheard(why); };
   // A reader that keeps the newest sample of each provider only would let anybody's take the place
@@ -128,42 +122,7 @@ std::unique_ptr<dds::Reader> Broker::State::make_reader() {
 
 // R26.
 bool Broker::State::room_again() {
-  if (!renewals.may_ask_for_room(clock.now())) return false;
-  std::lock_guard lock(mutex);
-  return table.take_room_again();
-}
-
-bool Broker::State::may_be_watched(const ServiceDescription& description) const {
-  return description.host == host && !description.process.empty();
-}
-
-void Broker::State::watch_process(const std::string& process) {
-  watch.watch(process, this, [state = weak_from_this(), process] {
-    if (const auto self = state.lock()) {
-      self->apply([&](Table& table) { return table.on_process_ended(process); });
-    }
-  });
-}
-
-// Whom nobody describes any more need not be watched; on whatever thread a description went while
-// another came.
-void Broker::State::settle_watch(const std::string& process) {
-  const auto known = [&] {
-    std::lock_guard lock(mutex);
-    return table.knows_process(process);
-  };
-  if (!known()) watch.unwatch(process, this);
-  if (known()) watch_process(process);
-}
-
-void Broker::State::settle_watches(const Table::Changes& changes) {
-  std::set<std::string> processes;
-  for (const Change& change : changes) {
-    if (change.kind == Change::Kind::Removed && may_be_watched(*change.description)) {
-      processes.insert(change.description->process);
-    }
-  }
-  for (const std::string& process : processes) settle_watch(process);
+  return renewals.may_ask_for_room(clock.now()) && table.take_room_again();
 }
 
 }  // namespace skein::brokerless_discovery

@@ -5,12 +5,6 @@
 
 namespace skein::brokerless_discovery {
 
-const std::string& Broker::State::watched_at() {
-  std::lock_guard lock(writing);
-  if (address.empty()) address = watch.open(participant.guid());
-  return address;
-}
-
 void Broker::State::publish(ServiceDescription description) {
   const Guid provider{description.provider};
   std::lock_guard lock(writing);
@@ -40,7 +34,7 @@ void Broker::State::leave(const Guid& provider) {
     description = mine->second.description;
   }
   mark_leaving(description);
-  apply([&](Table& table) { return table.on_description(description, Guid{}); });
+  table.apply([&](Table& table) { return table.on_description(description, Guid{}); });
   publish(std::move(description));
 }
 
@@ -56,14 +50,14 @@ void Broker::State::withdraw(const Guid& provider) {
       log(LogLevel::Warning, "broker", std::string("a withdrawal was not sent: ") + error.what());
     }
   }
-  apply([&](Table& table) { return table.on_withdrawn(provider, Guid{}); });
+  table.apply([&](Table& table) { return table.on_withdrawn(provider, Guid{}); });
 }
 
 // R17: a peer that slept through its lease is suspect to others, and on some vendors stays so
 // until it writes again.
 void Broker::State::tick() {
   room_again() ? renew_reader() : renew_if_due();
-  const std::set<Guid> contradicted = take_contradicted();
+  const std::set<Guid> contradicted = table.take_contradicted();
   std::lock_guard lock(writing);
   if (closed) return;
   const Instant now = clock.now();
@@ -82,12 +76,6 @@ void Broker::State::write_again(const Own& mine) {
     log(LogLevel::Warning, "broker",
         std::string("a description was not sent again: ") + error.what());
   }
-}
-
-// R24.
-std::set<Guid> Broker::State::take_contradicted() {
-  std::lock_guard lock(mutex);
-  return table.take_contradicted();
 }
 
 void Broker::State::arm() {
