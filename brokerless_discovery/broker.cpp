@@ -2,7 +2,11 @@
 
 #include <unistd.h>
 
-#include "broker_state.hpp"
+#include <atomic>
+#include <random>
+#include <utility>
+
+#include "beat.hpp"
 #include "brokerless_discovery/versions.hpp"
 #include "core/printable.hpp"
 #include "core/threads/sole_owner.hpp"
@@ -67,52 +71,52 @@ void check_own(const ServiceDescription& description, const Guid& participant) {
 
 }  // namespace
 
-const dds::Topic& Broker::State::topic() {
-  static const dds::Topic topic{"skein/services", "skein::discovery::ServiceDescription", true};
-  return topic;
-}
+/// The parts of a Broker. Others' descriptions come in by `reader` on the vendor's thread, and
+/// processes' ends by `processes` on the watch's. This peer's descriptions leave by `writer`, on
+/// the thread that provides and on `control`. Locks are taken in the order writer, table,
+/// observers.
+struct Broker::State {
+  State(dds::Participant& participant_, Clock& clock_, Executor& control, ProcessWatch& watch,
+        Options options_)
+      : participant(participant_),
+        clock(clock_),
+        options(std::move(options_)),
+        observers(control, itself),
+        table(clock, observers, asker),
+        processes(watch, table, participant.guid(), itself),
+        reader(participant, clock, control, table, processes, asker, options.lease, itself),
+        writer(participant, table, observers, options.lease),
+        beat(clock, control, options.lease, table, reader, writer, itself) {}
 
-dds::Qos Broker::State::description_qos(std::vector<std::string> partitions,
-                                        std::chrono::milliseconds lease) {
-  dds::Qos qos;
-  qos.transient_local = true;
-  qos.history_depth = 1;
-  qos.liveliness_lease = lease;
-  qos.partitions = std::move(partitions);
-  return qos;
-}
-
-std::string Broker::State::owner_partition(const std::string& owner) { return "managed/" + owner; }
+  dds::Participant& participant;
+  Clock& clock;
+  const Options options;
+  const std::string asker = options.system + "/" + options.entity;
+  std::weak_ptr<void> itself;  // for tasks and timers, which reach the parts only through it
+  Observers observers;
+  LockedTable table;
+  DescribedProcesses processes;
+  DescriptionReader reader;
+  DescriptionWriter writer;
+  Beat beat;
+  std::atomic<std::uint32_t> last_provider{std::random_device{}()};
+};
 
 Broker::Broker(dds::Participant& participant, Clock& clock, Executor& control, ProcessWatch& watch,
                Options options) {
   check_name("a system", options.system);
   check_name("an entity", options.entity);
   state_ = std::make_shared<State>(participant, clock, control, watch, std::move(options));
-  State& state = *state_;
-  state.itself = state_;
-  std::lock_guard lock(state.writing);
-  state.reader = state.make_reader();
-  state.last_tick = clock.now();
-  state.arm();
+  state_->itself = state_;
+  state_->reader.open();
+  state_->beat.start();
 }
 
+// The endpoints end here: the participant's end does not wait for the last owner of the state.
 Broker::~Broker() {
-  TimerId timer;
-  // They end here: the participant's end does not wait for whoever lets go of the state last.
-  std::unique_ptr<dds::Reader> reader;
-  std::map<std::string, std::unique_ptr<dds::Writer>> writers;
-  {
-    std::lock_guard lock(state_->writing);
-    state_->closed = true;
-    state_->own.clear();
-    timer = state_->tick_timer;
-    reader.swap(state_->reader);
-    writers.swap(state_->writers);
-  }
-  state_->clock.cancel(timer);
-  reader.reset();
-  writers.clear();
+  state_->beat.stop();
+  state_->reader.close();
+  state_->writer.close();
   state_->processes.close();
   await_sole_owner(state_);
 }
@@ -138,13 +142,13 @@ Broker::Registration Broker::add_service(ServiceDescription description) {
   check_name("an entity or a CSP", description.entity);
   check_own(description, state_->participant.guid());
   const Guid provider{description.provider};
-  // Its own services a peer knows at once, whether or not its writer and its reader have matched.
-  state_->table.apply([&](Table& table) { return table.on_description(description, Guid{}); });
-  state_->publish(std::move(description));
-  return state_->registration([provider](State& state) { state.withdraw(provider); });
+  state_->writer.add(std::move(description));
+  return Registration([state = std::weak_ptr(state_), provider] {
+    if (const auto self = state.lock()) self->writer.withdraw(provider);
+  });
 }
 
-void Broker::leave(const Guid& provider) { state_->leave(provider); }
+void Broker::leave(const Guid& provider) { state_->writer.leave(provider); }
 
 bool Broker::is_leaving(const Guid& provider) const {
   return state_->table.look([&](const Table& table) { return table.is_leaving(provider); });
@@ -209,9 +213,7 @@ std::optional<Guid> Broker::participant_of(const Guid& provider) const {
   return writer->is_nil() ? state_->participant.guid() : writer->participant();
 }
 
-std::uint64_t Broker::refused(Refusal why) const {
-  return state_->refused[static_cast<std::size_t>(why)];
-}
+std::uint64_t Broker::refused(Refusal why) const { return state_->reader.refused(why); }
 
 Table::Found Broker::all() const {
   return state_->table.look([](const Table& table) { return table.all(); });

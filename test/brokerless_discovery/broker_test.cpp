@@ -390,6 +390,37 @@ TEST_CASE("what a peer has withdrawn does not come back by its own message that 
   CHECK_FALSE(navigator.finds("A/INavigator"));
 }
 
+TEST_CASE("a service that is withdrawn while it says that it is about to leave stays withdrawn",
+          "[R10][R28]") {
+  /// Runs `on_post` in the midst of what posts.
+  struct Interrupting final : Executor {
+    bool post(Action) override {
+      if (on_post) std::exchange(on_post, nullptr)();
+      return true;
+    }
+    void post_or_run(Action task) override { post(std::move(task)); }
+    std::function<void()> on_post;
+  };
+  World world;
+  Peer ground(world, "ground");
+  Interrupting control;
+  ProcessWatch watch;
+  const auto participant = world.network.vendor()->create_participant({});
+  Broker broker(*participant, world.clock, control, watch,
+                {"uav-1", "navigator", "loopback", 1000ms});
+  auto service = description(1, "A/INavigator", "navigator");
+  service.provider = broker.new_provider().bytes;
+  auto registration = broker.add_service(service);
+  REQUIRE(ground.broker.all().size() == 1);
+
+  const auto observation = broker.observe([](const Change&) {});
+  control.on_post = [&] { registration.withdraw(); };
+  broker.leave({service.provider});
+  CHECK(broker.all().empty());
+  CHECK(ground.broker.all().empty());
+  CHECK(Peer(world, "late").broker.all().empty());
+}
+
 TEST_CASE("what found no room is asked for again when something goes", "[R26]") {
   World world;
   Peer ground(world, "ground");
@@ -681,6 +712,47 @@ TEST_CASE("a Broker's end leaves no endpoint to a timer's action that has not re
   end.join();
   CHECK(held);
   CHECK(gone);
+}
+
+TEST_CASE("the time that a Broker's first reader takes to be made is no sleep", "[R17]") {
+  /// Makes a reader in more than half a lease.
+  struct Slow final : dds::Participant {
+    explicit Slow(World& world_) : world(world_) {}
+    std::unique_ptr<dds::Writer> create_writer(const dds::Topic& topic, const dds::Qos& qos,
+                                               dds::WriterListener listener) override {
+      return plain->create_writer(topic, qos, std::move(listener));
+    }
+    std::unique_ptr<dds::Reader> create_reader(const dds::Topic& topic, const dds::Qos& qos,
+                                               dds::ReaderListener listener) override {
+      world.clock.advance(600ms);
+      return plain->create_reader(topic, qos, std::move(listener));
+    }
+    Guid guid() const override { return plain->guid(); }
+
+    World& world;
+    const std::unique_ptr<dds::Participant> plain = world.network.vendor()->create_participant({});
+  };
+  World world;
+  ManualExecutor control;
+  ProcessWatch watch;
+  Slow participant(world);
+  Broker broker(participant, world.clock, control, watch,
+                {"uav-1", "navigator", "loopback", 1000ms});
+  const Peer ground(world, "ground");
+  auto service = description(1, "A/INavigator", "navigator");
+  service.provider = broker.new_provider().bytes;
+  const auto registration = broker.add_service(service);
+  std::size_t written = 0;
+  world.network.judge_transfers([&](const dds::Transfer& transfer) {
+    written += transfer.topic == "skein/services";
+    return dds::Fate::deliver();
+  });
+  world.clock.advance(250ms);
+  REQUIRE(control.run_all() > 0);
+  CHECK(written == 0);
+  world.clock.advance(550ms);
+  REQUIRE(control.run_all() > 0);
+  CHECK(written > 0);
 }
 
 TEST_CASE("names that would not survive the wire are refused") {
