@@ -25,7 +25,7 @@
 #include "dds/port/vendor_names.hpp"
 #include "entity/asker.hpp"
 #include "entity/entity_access.hpp"
-#include "entity/head_parts.hpp"
+#include "entity/head/head_parts.hpp"
 #include "entity/inspection_topic.hpp"
 #include "entity/namesakes.hpp"
 #include "entity/periodic_topic.hpp"

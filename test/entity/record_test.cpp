@@ -9,7 +9,7 @@
 #include <limits>
 #include <mutex>
 
-#include "entity/decision_log.hpp"
+#include "entity/head/decision_log.hpp"
 #include "entity/entity_access.hpp"
 #include "office.hpp"
 #include "rpc/service/introspection_topic.hpp"

@@ -5,7 +5,6 @@
 
 #include "core/log.hpp"
 #include "core/system/whole_file.hpp"
-#include "head_session.hpp"
 #include "rpc/service/local_directory.hpp"
 #include "selection/service_history.hpp"
 #include "skein/call_context.hpp"
@@ -15,10 +14,8 @@
 namespace skein {
 namespace {
 
-using introspection::Decision;
 using introspection::Outcome;
 
-constexpr std::size_t kKeptDecisions = 64;
 constexpr std::chrono::seconds kWatchPeriod{1};
 
 const std::string kOverdue = " has not returned from a request whose time is over";
@@ -28,10 +25,9 @@ const std::string kOverdue = " has not returned from a request whose time is ove
 Head::State::State(const Parts& parts_, HeadOptions options_)
     : parts(parts_),
       options(std::move(options_)),
-      decision_log(parts.entity, options.log),
-      publisher(parts.participant, parts.control, introspection::kDecisions) {
-  for (const auto& strategy : options.strategies) strategies.add(strategy);
-  strategies.make(options.strategy);
+      decisions(parts, options.log),
+      strategies(options),
+      channels(parts) {
   if (!options.history.empty()) {
     history = History::load(options.history);
     try_whole_file("the Head's history", options.history);
@@ -44,15 +40,6 @@ Head::State::~State() {
   const TimerId last = watch_timer;
   lock.unlock();
   parts.clock.cancel(last);
-}
-
-std::shared_ptr<const SelectionStrategy> Head::State::strategy() const {
-  if (const CallContext* context = CallContext::current()) {
-    if (const auto* session = dynamic_cast<const entity::HeadSession*>(context->session()))
-      return session->strategy;
-  }
-  std::lock_guard lock(mutex);
-  return strategies.make(options.strategy);
 }
 
 CircuitBreaker& Head::State::breaker(std::string_view interface, std::string_view csp) {
@@ -241,29 +228,16 @@ std::size_t Head::State::stuck() {
   return stuck;
 }
 
-void Head::State::conclude(Decision&& record, Decision* wanted) {
+void Head::State::conclude(introspection::Decision&& record, introspection::Decision* wanted) {
   const bool explored = std::any_of(record.attempts.begin(), record.attempts.end(),
                                     [](const auto& attempt) { return attempt.explores; });
-  const bool read = publisher.on();
-  const bool told = read || decision_log.on();
-  std::optional<Decision> copy;
-  std::optional<Decision> dropped;  // outside the lock
   {
     std::lock_guard lock(mutex);
     record.stuck = static_cast<std::uint32_t>(stuck());
     if (explored) history.note_exploration(record.service);
     begin_learning(record.service);
-    record.number = ++last_decision;
-    if (told || wanted) copy = record;
-    decisions.push_back(std::move(record));
-    if (decisions.size() > kKeptDecisions) {
-      dropped = std::move(decisions.front());
-      decisions.pop_front();
-    }
   }
-  if (read) publisher.publish(*copy);
-  if (decision_log.on()) decision_log.write(*copy);
-  if (wanted) *wanted = std::move(*copy);
+  decisions.add(std::move(record), wanted);
 }
 
 }  // namespace skein

@@ -19,7 +19,6 @@
 namespace skein {
 
 using brokerless_discovery::Absence;
-using brokerless_discovery::Departure;
 using brokerless_discovery::find_attribute;
 using brokerless_discovery::number_attribute;
 using brokerless_discovery::Quantity;
@@ -28,10 +27,6 @@ using brokerless_discovery::ServiceDescription;
 
 namespace {
 
-// A launcher takes less to start a CSP again.
-constexpr std::chrono::seconds kReturnPatience{10};
-// The Broker may hear of a CSP's end later than its connection does.
-constexpr std::chrono::seconds kNewsPatience{1};
 // Nobody tells a Head that waits that its caller has given up.
 constexpr std::chrono::milliseconds kLookPeriod{100};
 
@@ -146,35 +141,17 @@ std::vector<Candidate> Head::State::candidates(const InterfaceInfo& interface,
   return candidates;
 }
 
-bool Head::State::is_worn_out(const Losses& losses, std::string_view csp) {
-  return std::ranges::count(losses, csp, &Loss::csp) > 1;
-}
-
-Instant Head::State::awaited(const InterfaceInfo& interface, const TaskOptions& task,
-                             const Losses& losses) const {
-  Instant until{};
-  const auto may_come_back = [&](const std::string& csp) {
-    return (task.only.empty() || csp == task.only) && !is_worn_out(losses, csp);
-  };
-  for (const Absence& csp : parts.broker.absent(interface.name)) {
-    if (csp.how != Departure::Left && may_come_back(csp.entity))
-      until = std::max(until, csp.since + Duration(kReturnPatience));
-  }
-  for (const Loss& loss : losses) {
-    if (may_come_back(loss.csp) && parts.broker.knows(loss.provider))
-      until = std::max(until, loss.when + Duration(kNewsPatience));
-  }
-  return until;
-}
-
-bool Head::State::await_change(const InterfaceInfo& interface, const TaskOptions& task,
-                               const Losses& losses, std::uint64_t seen, Instant deadline) const {
+bool Head::State::await_change(const InterfaceInfo& interface, const entity::LostCsps& lost,
+                               std::uint64_t seen, Instant deadline) const {
+  const auto& broker = parts.broker;
   const CallContext* context = CallContext::current();
   for (;;) {
     const Instant now = parts.clock.now();
-    const Instant end = std::min(deadline, awaited(interface, task, losses));
+    const Instant end = std::min(
+        deadline, lost.awaited(broker.absent(interface.name),
+                               [&](const Guid& provider) { return broker.knows(provider); }));
     if (now >= end || (context && context->cancelled())) return false;
-    if (parts.broker.await_change(seen, std::min(end, now + Duration(kLookPeriod)))) return true;
+    if (broker.await_change(seen, std::min(end, now + Duration(kLookPeriod)))) return true;
   }
 }
 
@@ -182,10 +159,11 @@ std::vector<Candidate> Head::State::await_candidates(const InterfaceInfo& interf
                                                      const TaskOptions& task,
                                                      const SelectionStrategy& strategy,
                                                      Instant deadline) {
+  const entity::LostCsps none(task.only);
   for (;;) {
     const std::uint64_t seen = parts.broker.generation();
     auto found = candidates(interface, task, strategy, parts.clock.now());
-    if (!found.empty() || !await_change(interface, task, {}, seen, deadline)) return found;
+    if (!found.empty() || !await_change(interface, none, seen, deadline)) return found;
   }
 }
 
@@ -228,24 +206,6 @@ PastDecisions Head::State::count_request(const InterfaceInfo& interface) {
   const PastDecisions before = history.decisions(interface.name);
   history.begin(interface.name);
   return before;
-}
-
-std::shared_ptr<Channel> Head::State::channel_to(const Candidate& candidate, Duration patience,
-                                                 Instant& now) {
-  {
-    std::lock_guard lock(mutex);
-    const auto found = channels.find(candidate.provider);
-    if (found != channels.end() && found->second->connected()) return found->second;
-    std::erase_if(channels, [](const auto& entry) { return !entry.second->connected(); });
-  }
-  for (const auto& description : parts.broker.all()) {
-    if (description->provider != candidate.provider.bytes) continue;
-    auto channel = parts.connector.open_provider(*description, {}, patience);
-    now = parts.clock.now();
-    std::lock_guard lock(mutex);
-    return channels.insert_or_assign(candidate.provider, std::move(channel)).first->second;
-  }
-  throw Unavailable(candidate.name + " left before it could be asked");
 }
 
 }  // namespace skein

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <deque>
 #include <exception>
 #include <map>
 #include <mutex>
@@ -9,11 +8,12 @@
 
 #include "brokerless_discovery/broker.hpp"
 #include "core/recent_set.hpp"
-#include "decision_log.hpp"
-#include "head_parts.hpp"
-#include "rpc/service/introspection_topic.hpp"
+#include "csp_channels.hpp"
+#include "kept_decisions.hpp"
+#include "lost_csps.hpp"
 #include "rpc/service/service.hpp"
 #include "selection/wire_values.hpp"
+#include "session_strategies.hpp"
 
 namespace skein {
 
@@ -22,32 +22,20 @@ struct Head::State {
   State(const Parts& parts, HeadOptions options);
   ~State();
 
-  std::shared_ptr<const SelectionStrategy> strategy() const;
   /// Those that are available; perhaps none.
   std::vector<Candidate> candidates(const InterfaceInfo& interface, const TaskOptions& task,
                                     const SelectionStrategy& strategy, Instant now);
   /// The same; where there is none, waits for a CSP that died to come back, until `deadline`.
   std::vector<Candidate> await_candidates(const InterfaceInfo& interface, const TaskOptions& task,
                                           const SelectionStrategy& strategy, Instant deadline);
-  /// A CSP that was lost while it worked on a request.
-  struct Loss {
-    std::string csp;
-    Guid provider;
-    Instant when;
-  };
-  using Losses = std::vector<Loss>;
-  /// Whether a request has lost that CSP so often that it is not to be asked again.
-  static bool is_worn_out(const Losses& losses, std::string_view csp);
   /// Waits for the Broker's next change after `seen` while a CSP that died may come back, until
   /// `deadline`. False where there was none.
-  bool await_change(const InterfaceInfo& interface, const TaskOptions& task, const Losses& losses,
+  bool await_change(const InterfaceInfo& interface, const entity::LostCsps& lost,
                     std::uint64_t seen, Instant deadline) const;
   /// Throws NoCandidate: there is none.
   [[noreturn]] void refuse_without(const InterfaceInfo& interface, const std::string& only);
   /// A request has come: how many there were before, which is its number less 1.
   PastDecisions count_request(const InterfaceInfo& interface);
-  /// Waits no longer than `patience` for a new connection; `now` is the time when it stands.
-  std::shared_ptr<Channel> channel_to(const Candidate& candidate, Duration patience, Instant& now);
 
   /// A CSP begins to work: the number of its run. Nothing, and nothing happens, where it has been
   /// quarantined since it was listed.
@@ -131,12 +119,13 @@ struct Head::State {
 
   const Parts parts;
   const HeadOptions options;
+  entity::KeptDecisions decisions;
+  entity::SessionStrategies strategies;
+  entity::CspChannels channels;
   mutable std::mutex mutex;
-  StrategyFactory strategies;
   History history;
   std::map<std::pair<std::string, std::string>, CircuitBreaker, ByCsp> breakers;
   std::unordered_map<const InterfaceInfo*, Roster> rosters;
-  std::map<Guid, std::shared_ptr<Channel>> channels;
   std::vector<Running> running;
   std::map<Guid, Hung> hung;
   std::map<std::pair<std::string, std::string>, std::string, ByCsp> told;  // last, of each CSP
@@ -147,10 +136,6 @@ struct Head::State {
   RecentSet<Guid> told_unusable{64};
   bool was_degraded = false;
   std::uint64_t last_run = 0;
-  std::uint64_t last_decision = 0;
-  std::deque<introspection::Decision> decisions;
-  entity::DecisionLog decision_log;
-  introspection::Publisher<introspection::Decision> publisher;
   bool learns = false;
   std::unique_ptr<ThreadExecutor> learner;  // once there is something to learn; ends first
 
@@ -166,9 +151,6 @@ struct Head::State {
   void remember(const InterfaceInfo& interface, const Candidate& candidate,
                 const std::shared_ptr<const Features>& features, const Ending& ending);
   void begin_learning(const std::string& service);
-  /// Until when a CSP may come back; in the past where none may.
-  Instant awaited(const InterfaceInfo& interface, const TaskOptions& task,
-                  const Losses& losses) const;
   std::size_t stuck();
   void arm_watch_timer(Instant next_end);
   void look_at_watches();

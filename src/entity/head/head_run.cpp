@@ -4,7 +4,6 @@
 #include <set>
 #include <string_view>
 
-#include "rpc/service/local_directory.hpp"
 #include "selection/decision_record.hpp"
 #include "selection/slice.hpp"
 #include "skein/error.hpp"
@@ -120,7 +119,8 @@ Head::Run::Run(State& state, const InterfaceInfo& interface, const SelectionStra
       deadline_(saturating_sum(begin, wire_values::duration(record.available))),
       strategy_(strategy),
       features_(std::make_shared<const Features>(task.options().features)),
-      iterator_(strategy, candidates, decision_record::situation_of(record)) {
+      iterator_(strategy, candidates, decision_record::situation_of(record)),
+      lost_(task.options().only) {
   decision_record::list(record_, candidates);
 }
 
@@ -200,16 +200,15 @@ std::vector<Candidate> Head::Run::joined() {
     const bool known =
         std::any_of(record_.candidates.begin(), record_.candidates.end(),
                     [&](const auto& each) { return each.provider == candidate.provider.bytes; });
-    return State::is_worn_out(losses_, candidate.name) ||
-           (known && !may_have_another_turn(candidate.name));
+    return lost_.is_worn_out(candidate.name) || (known && !may_have_another_turn(candidate.name));
   });
   return joined;
 }
 
 // Only with nothing in hand: what there is is not held back.
 bool Head::Run::await_return(std::uint64_t seen) {
-  if (losses_.empty() || task_.accepted() > 0) return false;
-  const bool changed = state_.await_change(interface_, task_.options(), losses_, seen, deadline_);
+  if (lost_.empty() || task_.accepted() > 0) return false;
+  const bool changed = state_.await_change(interface_, lost_, seen, deadline_);
   waited_ = !changed;
   return changed;
 }
@@ -249,8 +248,8 @@ void Head::Run::begin(CandidateIterator::Next next, Instant began) {
                                        : selection.slice);
   try {
     Instant reached = began;
-    live.channel = state_.channel_to(live.candidate,
-                                     std::min(end - began, Duration(kOpeningPatience)), reached);
+    live.channel = state_.channels.open(live.candidate,
+                                        std::min(end - began, Duration(kOpeningPatience)), reached);
     {
       const State::Watch watch(state_, interface_, live.candidate, end);
       live.work =
@@ -324,7 +323,7 @@ void Head::Run::note(Live& live, Verdict verdict) {
               fault ? reason(attempt) : std::string(), record_.decided + 1,
               static_cast<std::uint32_t>(live.attempt)});
   if (verdict.outcome == Outcome::Disconnected && live.channel && !live.channel->connected())
-    losses_.push_back({live.candidate.name, live.candidate.provider, now()});
+    lost_.add(live.candidate, now());
   settled_ = verdict.settled;
   last_csp_ = verdict.own ? std::string() : live.candidate.name;
   last_ = std::move(verdict);
@@ -377,7 +376,7 @@ void Head::Run::fail() const {
   if (task_.accepted() > 0 && !settled_) {
     throw NoneAccepted("the results of " + std::to_string(task_.accepted()) + " CSPs do not agree");
   }
-  if (State::is_worn_out(losses_, last_csp_)) {
+  if (lost_.is_worn_out(last_csp_)) {
     throw Internal("CSP '" + last_csp_ +
                    "' was lost at this request twice, and is not asked again, as the request "
                    "itself may be the cause: " +

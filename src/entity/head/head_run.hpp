@@ -75,7 +75,7 @@ class Head::Run {
   std::vector<Live> live_;
   std::optional<Instant> late_at_;
   std::shared_ptr<Bell> bell_;  // once several work at a time
-  State::Losses losses_;
+  entity::LostCsps lost_;
   bool waited_ = false;  // for a CSP that was lost, in vain
   task_run::Verdict last_;
   std::string last_csp_;  // whose that was; empty where none could be asked

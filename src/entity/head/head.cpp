@@ -7,7 +7,6 @@
 #include "core/wall_clock.hpp"
 #include "dds/port/port.hpp"
 #include "head_run.hpp"
-#include "head_session.hpp"
 #include "rpc/service/local_directory.hpp"
 #include "rpc/service/service.hpp"
 #include "selection/decision_record.hpp"
@@ -84,14 +83,11 @@ Head::~Head() {
 }
 
 void Head::add_strategy(std::shared_ptr<const SelectionStrategy> strategy) {
-  std::lock_guard lock(state_->mutex);
   state_->strategies.add(std::move(strategy));
 }
 
 std::shared_ptr<Session> Head::initialize(const rpc::OpenRequest& request) const {
-  std::lock_guard lock(state_->mutex);
-  return std::make_shared<entity::HeadSession>(state_->strategies.make(
-      request.strategy.empty() ? state_->options.strategy : request.strategy));
+  return state_->strategies.open(request.strategy);
 }
 
 Decision Head::open_record(const InterfaceInfo& interface, const SelectionStrategy& strategy,
@@ -117,7 +113,7 @@ void Head::decide(const InterfaceInfo& interface, task_run::TaskRun& task, Durat
   const Instant begin = state_->parts.clock.now();
   const TaskOptions& options = task.options();
   check_options(options);
-  const auto strategy = state_->strategy();
+  const auto strategy = state_->strategies.of_this_call();
   Decision record = open_record(interface, *strategy, options, begin, limit);
   record.request = options.request;
   record.execution = to_string(options.execution);
@@ -136,7 +132,7 @@ std::shared_ptr<Channel> Head::preselect(const InterfaceInfo& interface, const F
                                          Duration limit) {
   const Instant begin = state_->parts.clock.now();
   check_features(features);
-  const auto strategy = state_->strategy();
+  const auto strategy = state_->strategies.of_this_call();
   TaskOptions options;
   options.features = features;
   Decision record = open_record(interface, *strategy, options, begin, limit);
@@ -154,7 +150,7 @@ std::shared_ptr<Channel> Head::preselect(const InterfaceInfo& interface, const F
     introspection::Attempt& attempt = record.attempts.emplace_back();
     decision_record::note_choice(attempt, next, situation.remaining);
     Instant reached = begin;
-    channel = state_->channel_to(next.candidate, situation.remaining, reached);
+    channel = state_->channels.open(next.candidate, situation.remaining, reached);
     attempt.outcome = Outcome::Preselected;
   });
   return channel;
@@ -168,10 +164,7 @@ std::vector<Head::Current> Head::running() const {
   return running;
 }
 
-std::vector<Decision> Head::decisions() const {
-  std::lock_guard lock(state_->mutex);
-  return {state_->decisions.begin(), state_->decisions.end()};
-}
+std::vector<Decision> Head::decisions() const { return state_->decisions.list(); }
 
 History Head::history() const {
   std::lock_guard lock(state_->mutex);
