@@ -71,16 +71,7 @@ const char* to_string(Execution execution) noexcept {
 Head::Head(const Parts& parts, HeadOptions options)
     : state_(std::make_unique<State>(parts, std::move(options))) {}
 
-Head::~Head() {
-  state_->learner.reset();
-  const auto& file = state_->options.history;
-  if (file.empty()) return;
-  try {
-    state_->history.save(file);
-  } catch (const Error& error) {
-    log(LogLevel::Error, state_->parts.entity, error.what());
-  }
-}
+Head::~Head() = default;
 
 void Head::add_strategy(std::shared_ptr<const SelectionStrategy> strategy) {
   state_->strategies.add(std::move(strategy));
@@ -102,7 +93,7 @@ Decision Head::open_record(const InterfaceInfo& interface, const SelectionStrate
   record.good_enough = task.utility.good_enough;
   record.available = wire_values::ns(time_left(begin, limit));
   record.exploration = state_->options.exploration;
-  const auto past = state_->count_request(interface);
+  const auto past = state_->learning.begin_request(interface.name);
   record.decided = past.made;
   record.explored = past.explored;
   return record;
@@ -122,7 +113,7 @@ void Head::decide(const InterfaceInfo& interface, task_run::TaskRun& task, Durat
         state_->await_candidates(interface, options, *strategy,
                                  saturating_sum(begin, wire_values::duration(record.available)));
     if (candidates.empty()) state_->refuse_without(interface, options.only);
-    state_->tell_too_few(interface, options, candidates.size());
+    state_->warnings.tell_too_few(interface, options, candidates.size());
     Run run(*state_, interface, *strategy, task, candidates, record, begin);
     if (!run.run()) run.fail();
   });
@@ -166,10 +157,7 @@ std::vector<Head::Current> Head::running() const {
 
 std::vector<Decision> Head::decisions() const { return state_->decisions.list(); }
 
-History Head::history() const {
-  std::lock_guard lock(state_->mutex);
-  return state_->history;
-}
+History Head::history() const { return state_->learning.history(); }
 
 bool Head::degraded() const { return state_->count_stuck() >= state_->options.max_stuck; }
 

@@ -119,25 +119,21 @@ std::shared_ptr<const std::string> Head::State::host_of(const InterfaceInfo& int
 std::vector<Candidate> Head::State::candidates(const InterfaceInfo& interface,
                                                const TaskOptions& task,
                                                const SelectionStrategy& strategy, Instant now) {
-  std::lock_guard lock(mutex);
-  const Roster& roster = this->roster(interface);
   std::vector<Candidate> candidates;
-  candidates.reserve(roster.csps.size());
-  for (const Known& known : roster.csps) {
-    if (!task.only.empty() && known.candidate.name != task.only) continue;
-    if (known.hangs()) continue;
-    Candidate& candidate = candidates.emplace_back(known.candidate);
-    candidate.breaker = known.breaker->state(now);
-    if (candidate.breaker != CircuitBreaker::State::Closed)
-      candidate.quarantine = known.breaker->quarantine(now);
+  {
+    std::lock_guard lock(mutex);
+    const Roster& roster = this->roster(interface);
+    candidates.reserve(roster.csps.size());
+    for (const Known& known : roster.csps) {
+      if (!task.only.empty() && known.candidate.name != task.only) continue;
+      if (known.hangs()) continue;
+      Candidate& candidate = candidates.emplace_back(known.candidate);
+      candidate.breaker = known.breaker->state(now);
+      if (candidate.breaker != CircuitBreaker::State::Closed)
+        candidate.quarantine = known.breaker->quarantine(now);
+    }
   }
-  if (!strategy.reads_history()) return candidates;
-  std::vector<std::string_view> names;
-  names.reserve(candidates.size());
-  for (const Candidate& candidate : candidates) names.push_back(candidate.name);
-  auto predictions = history.predict(interface.name, names, task.features);
-  for (std::size_t i = 0; i < candidates.size(); ++i)
-    candidates[i].learned = std::move(predictions[i]);
+  if (strategy.reads_history()) learning.predict(interface, task.features, candidates);
   return candidates;
 }
 
@@ -199,13 +195,6 @@ void Head::State::refuse_without(const InterfaceInfo& interface, const std::stri
   query.client = &interface;
   throw NoCandidate(parts.broker.explain(query) + "; give " + parts.entity +
                     " a CSP for it, by provide_csp() or by <csp> in the mission profile");
-}
-
-PastDecisions Head::State::count_request(const InterfaceInfo& interface) {
-  std::lock_guard lock(mutex);
-  const PastDecisions before = history.decisions(interface.name);
-  history.begin(interface.name);
-  return before;
 }
 
 }  // namespace skein

@@ -255,7 +255,7 @@ void Head::Run::begin(CandidateIterator::Next next, Instant began) {
       live.work =
           task_.begin(live.channel, std::max(Duration::zero(), end - reached), live.candidate);
     }
-    if (live.work->waited()) state_.tell_waiting(interface_, task_.options());
+    if (live.work->waited()) state_.warnings.tell_waiting(interface_, task_.options());
     live_.push_back(std::move(live));
   } catch (...) {
     Verdict verdict = task_run::verdict_of_current_exception();

@@ -4,9 +4,7 @@
 #include <utility>
 
 #include "core/log.hpp"
-#include "core/system/whole_file.hpp"
 #include "rpc/service/local_directory.hpp"
-#include "selection/service_history.hpp"
 #include "skein/call_context.hpp"
 #include "skein/error.hpp"
 #include "skein/introspection.idl.hpp"
@@ -27,13 +25,9 @@ Head::State::State(const Parts& parts_, HeadOptions options_)
       options(std::move(options_)),
       decisions(parts, options.log),
       strategies(options),
-      channels(parts) {
-  if (!options.history.empty()) {
-    history = History::load(options.history);
-    try_whole_file("the Head's history", options.history);
-  }
-  history.learn();
-}
+      channels(parts),
+      warnings(parts.entity),
+      learning(parts.entity, options.history) {}
 
 Head::State::~State() {
   std::unique_lock lock(mutex);
@@ -67,7 +61,7 @@ std::optional<std::uint64_t> Head::State::begin(const InterfaceInfo& interface,
 
 void Head::State::end(const InterfaceInfo& interface, const Candidate& candidate,
                       const std::shared_ptr<const Features>& features, std::uint64_t run,
-                      const Ending& ending) {
+                      const entity::Ending& ending) {
   const bool timed_out = ending.outcome == Outcome::TimedOut;
   const bool is_told = timed_out && ending.fault && ending.expected > Duration::zero() &&
                        !candidate.in_process && options.on_hang;
@@ -84,78 +78,17 @@ void Head::State::end(const InterfaceInfo& interface, const Candidate& candidate
         breaker.fail(now);
       }
       if (was_closed && breaker.state(now) != CircuitBreaker::State::Closed)
-        tell(interface.name, candidate.name, " is in quarantine: " + ending.reason);
+        warnings.tell(interface.name, candidate.name, " is in quarantine: " + ending.reason);
     } else if (ending.outcome == Outcome::Accepted || ending.outcome == Outcome::Refused) {
       breaker.succeed();
     } else {
       breaker.end();
     }
-    if (!ending.own) remember(interface, candidate, features, ending);
     if (timed_out && candidate.in_process)
       hung.insert_or_assign(candidate.provider, Hung{interface.name, candidate.name, ending.fault});
   }
+  learning.add(interface, candidate, features, ending);
   if (is_told) options.on_hang(candidate);
-}
-
-void Head::State::remember(const InterfaceInfo& interface, const Candidate& candidate,
-                           const std::shared_ptr<const Features>& features, const Ending& ending) {
-  const bool overran = ending.expected > Duration::zero() && ending.took > ending.expected;
-  const bool late =
-      ending.outcome == Outcome::TimedOut || (ending.outcome == Outcome::Cancelled && overran);
-  if (ending.outcome == Outcome::Cancelled && !late) return;
-  const bool answered = ending.outcome == Outcome::Accepted || ending.settled;
-  history.add(interface.name, candidate.name,
-              {features, ending.took, answered, late, ending.quality, ending.request, ending.after},
-              candidate.learned ? &*candidate.learned : nullptr);
-}
-
-// Under the lock. One lesson at a time.
-void Head::State::begin_learning(const std::string& service) {
-  if (learns) return;
-  const auto lesson = history.next_lesson(service);
-  if (!lesson) return;
-  if (!learner) learner = std::make_unique<ThreadExecutor>("skein-learn");
-  learns = learner->post([this, lesson] {
-    lesson->learn();
-    std::lock_guard lock(mutex);
-    history.take(*lesson);
-    learns = false;
-  });
-}
-
-void Head::State::tell_waiting(const InterfaceInfo& interface, const TaskOptions& task) {
-  if (task.execution == Execution::One) return;
-  {
-    std::lock_guard lock(mutex);
-    if (!told_waiting.insert(&interface).second) return;
-  }
-  log(LogLevel::Warning, parts.entity,
-      "the CSPs of " + std::string(interface.name) + " are to work at a time (execution '" +
-          to_string(task.execution) +
-          "'), but the task's `run` waits for each: they work one after the other; return what an "
-          "`async_` function returns");
-}
-
-void Head::State::tell_too_few(const InterfaceInfo& interface, const TaskOptions& task,
-                               std::size_t csps) {
-  if (task.enough == TaskOptions::kAll || task.enough <= csps) return;
-  {
-    std::lock_guard lock(mutex);
-    if (!told_too_few.insert(&interface).second) return;
-  }
-  log(LogLevel::Warning, parts.entity,
-      "a task waits for `enough` = " + std::to_string(task.enough) + " results, but " +
-          std::string(interface.name) + " has " + std::to_string(csps) +
-          " CSPs: its result is made of what these give, once all have ended");
-}
-
-// Under the lock. Nothing that was told of it last: one cause is not told again at each request.
-void Head::State::tell(std::string_view interface, const std::string& csp,
-                       const std::string& text) {
-  std::string& last = told[{std::string(interface), csp}];
-  if (last == text) return;
-  last = text;
-  log(LogLevel::Warning, parts.entity, "CSP '" + csp + "'" + text);
 }
 
 Head::State::Watch::Watch(State& state, const InterfaceInfo& interface, const Candidate& candidate,
@@ -190,10 +123,11 @@ void Head::State::look_at_watches() {
     }
     const auto service = parts.directory->find(watch->candidate_.provider);
     if (!service || service->thread() != CallThread::Caller) continue;
-    tell(watch->interface_, watch->candidate_.name,
-         kOverdue +
-             "; it runs on its caller's thread, which waits for it: give it a thread of its "
-             "own (CallThread::Own)");
+    warnings.tell(
+        watch->interface_, watch->candidate_.name,
+        kOverdue +
+            "; it runs on its caller's thread, which waits for it: give it a thread of its "
+            "own (CallThread::Own)");
   }
   watch_timer = 0;
   if (next_end != Instant::max()) arm_watch_timer(next_end);
@@ -215,7 +149,7 @@ std::size_t Head::State::stuck() {
     names += (names.empty() ? "" : ", ") + csp.csp;
     // Who is hardly late is told of only if he still is so when he is looked at again.
     if (std::exchange(csp.tell, true))
-      tell(csp.interface, csp.csp, kOverdue + "; it is not asked again before it returns");
+      warnings.tell(csp.interface, csp.csp, kOverdue + "; it is not asked again before it returns");
   }
   const std::size_t stuck = hung.size();
   const bool degraded = stuck >= options.max_stuck;
@@ -234,9 +168,8 @@ void Head::State::conclude(introspection::Decision&& record, introspection::Deci
   {
     std::lock_guard lock(mutex);
     record.stuck = static_cast<std::uint32_t>(stuck());
-    if (explored) history.note_exploration(record.service);
-    begin_learning(record.service);
   }
+  learning.end_request(record.service, explored);
   decisions.add(std::move(record), wanted);
 }
 

@@ -3,12 +3,13 @@
 #include <exception>
 #include <map>
 #include <mutex>
-#include <set>
 #include <unordered_map>
 
 #include "brokerless_discovery/broker.hpp"
 #include "core/recent_set.hpp"
 #include "csp_channels.hpp"
+#include "head_learning.hpp"
+#include "head_warnings.hpp"
 #include "kept_decisions.hpp"
 #include "lost_csps.hpp"
 #include "rpc/service/service.hpp"
@@ -34,40 +35,21 @@ struct Head::State {
                     std::uint64_t seen, Instant deadline) const;
   /// Throws NoCandidate: there is none.
   [[noreturn]] void refuse_without(const InterfaceInfo& interface, const std::string& only);
-  /// A request has come: how many there were before, which is its number less 1.
-  PastDecisions count_request(const InterfaceInfo& interface);
 
   /// A CSP begins to work: the number of its run. Nothing, and nothing happens, where it has been
   /// quarantined since it was listed.
   std::optional<std::uint64_t> begin(const InterfaceInfo& interface, const Candidate& candidate,
                                      Instant now);
-  struct Ending {
-    introspection::Outcome outcome;
-    Duration took;
-    Duration expected;  ///< As Selection::expected.
-    std::optional<double> quality;
-    bool fault;
-    bool settled;           ///< A refusal that is the answer.
-    bool own;               ///< As Verdict::own.
-    std::string reason;     ///< Of a fault, in words.
-    std::uint64_t request;  ///< Its number.
-    std::uint32_t after;    ///< As History::Sample::after.
-  };
   /// What came of it: for the breaker, the history, and whoever is told of hangs.
   void end(const InterfaceInfo& interface, const Candidate& candidate,
            const std::shared_ptr<const Features>& features, std::uint64_t run,
-           const Ending& ending);
+           const entity::Ending& ending);
   /// Runs `decide()`, which fills the record, and concludes that, also where it throws.
   template <class Decide>
   void record(introspection::Decision& record, Instant begin, introspection::Decision* wanted,
               Decide decide);
   /// Numbers the decision, keeps it and tells of it; a copy to whom `wanted` belongs, if anybody.
   void conclude(introspection::Decision&& record, introspection::Decision* wanted = nullptr);
-  /// Logs, once for each interface, that CSPs do not work at a time since `run` waits for each.
-  void tell_waiting(const InterfaceInfo& interface, const TaskOptions& task);
-  /// Logs, once for each interface, that a task asks for more results than there are CSPs.
-  void tell_too_few(const InterfaceInfo& interface, const TaskOptions& task, std::size_t csps);
-
   /// While it lives this thread may run a CSP, and then cannot say itself that it does not return:
   /// that is logged after `end`, at most a second later.
   class Watch {
@@ -122,22 +104,18 @@ struct Head::State {
   entity::KeptDecisions decisions;
   entity::SessionStrategies strategies;
   entity::CspChannels channels;
+  entity::HeadWarnings warnings;
   mutable std::mutex mutex;
-  History history;
   std::map<std::pair<std::string, std::string>, CircuitBreaker, ByCsp> breakers;
   std::unordered_map<const InterfaceInfo*, Roster> rosters;
   std::vector<Running> running;
   std::map<Guid, Hung> hung;
-  std::map<std::pair<std::string, std::string>, std::string, ByCsp> told;  // last, of each CSP
   std::vector<const Watch*> watches;
   TimerId watch_timer = 0;  // armed while there are watches, and until the next round after them
-  std::set<const InterfaceInfo*> told_waiting;
-  std::set<const InterfaceInfo*> told_too_few;
   RecentSet<Guid> told_unusable{64};
   bool was_degraded = false;
   std::uint64_t last_run = 0;
-  bool learns = false;
-  std::unique_ptr<ThreadExecutor> learner;  // once there is something to learn; ends first
+  entity::HeadLearning learning;  // ends first, and writes the history
 
  private:
   const Roster& roster(const InterfaceInfo& interface);
@@ -148,13 +126,9 @@ struct Head::State {
   std::shared_ptr<const std::string> host_of(const InterfaceInfo& interface,
                                              const Guid& provider) const;
   CircuitBreaker& breaker(std::string_view interface, std::string_view csp);
-  void remember(const InterfaceInfo& interface, const Candidate& candidate,
-                const std::shared_ptr<const Features>& features, const Ending& ending);
-  void begin_learning(const std::string& service);
   std::size_t stuck();
   void arm_watch_timer(Instant next_end);
   void look_at_watches();
-  void tell(std::string_view interface, const std::string& csp, const std::string& text);
 };
 
 template <class Decide>
