@@ -7,8 +7,6 @@
 #include "core/wall_clock.hpp"
 #include "dds/port/port.hpp"
 #include "head_run.hpp"
-#include "rpc/service/local_directory.hpp"
-#include "rpc/service/service.hpp"
 #include "selection/decision_record.hpp"
 #include "skein/call_context.hpp"
 #include "skein/error.hpp"
@@ -112,7 +110,7 @@ void Head::decide(const InterfaceInfo& interface, task_run::TaskRun& task, Durat
     const auto candidates =
         state_->await_candidates(interface, options, *strategy,
                                  saturating_sum(begin, wire_values::duration(record.available)));
-    if (candidates.empty()) state_->refuse_without(interface, options.only);
+    if (candidates.empty()) state_->known.refuse(interface, options.only);
     state_->warnings.tell_too_few(interface, options, candidates.size());
     Run run(*state_, interface, *strategy, task, candidates, record, begin);
     if (!run.run()) run.fail();
@@ -133,7 +131,7 @@ std::shared_ptr<Channel> Head::preselect(const InterfaceInfo& interface, const F
     auto candidates =
         state_->await_candidates(interface, options, *strategy,
                                  saturating_sum(begin, wire_values::duration(record.available)));
-    if (candidates.empty()) state_->refuse_without(interface, {});
+    if (candidates.empty()) state_->known.refuse(interface, {});
     decision_record::list(record, candidates);
     const Situation situation = decision_record::situation_of(record);
     CandidateIterator iterator(*strategy, std::move(candidates), situation);
@@ -147,18 +145,12 @@ std::shared_ptr<Channel> Head::preselect(const InterfaceInfo& interface, const F
   return channel;
 }
 
-std::vector<Head::Current> Head::running() const {
-  std::lock_guard lock(state_->mutex);
-  std::vector<Current> running;
-  for (const auto& each : state_->running)
-    running.push_back({each.csp, each.pid, each.host ? *each.host : std::string()});
-  return running;
-}
+std::vector<Head::Current> Head::running() const { return state_->running.list(); }
 
 std::vector<Decision> Head::decisions() const { return state_->decisions.list(); }
 
 History Head::history() const { return state_->learning.history(); }
 
-bool Head::degraded() const { return state_->count_stuck() >= state_->options.max_stuck; }
+bool Head::degraded() const { return state_->overdue.count() >= state_->options.max_stuck; }
 
 }  // namespace skein

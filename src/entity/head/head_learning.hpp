@@ -2,30 +2,14 @@
 
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "running_csps.hpp"
 #include "skein/executor.hpp"
-#include "skein/head.hpp"
-#include "skein/introspection.idl.hpp"
 
 namespace skein::entity {
-
-/// What came of a run of a CSP.
-struct Ending {
-  introspection::Outcome outcome;
-  Duration took;
-  Duration expected;  ///< As Selection::expected.
-  std::optional<double> quality;
-  bool fault;
-  bool settled;           ///< A refusal that is the answer.
-  bool own;               ///< As Verdict::own.
-  std::string reason;     ///< Of a fault, in words.
-  std::uint64_t request;  ///< Its number.
-  std::uint32_t after;    ///< As History::Sample::after.
-};
 
 /// What a Head has learned about its CSPs from past requests: its History, which a thread of its
 /// own learns from. Thread-safe.

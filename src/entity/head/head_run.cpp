@@ -231,7 +231,8 @@ void Head::Run::begin(CandidateIterator::Next next, Instant began) {
   decision_record::note_choice(attempt, next, deadline_ - began);
   attempt.round = round_;
   attempt.began = wire_values::ns(began - begin_);
-  const auto run = state_.begin(interface_, next.candidate, began);
+  const auto run = state_.running.begin(
+      interface_, next.candidate, state_.known.host_of(interface_, next.candidate.provider), began);
   if (!run) {
     attempt.outcome = Outcome::Cancelled;
     attempt.text = "it has been quarantined meanwhile";
@@ -251,7 +252,7 @@ void Head::Run::begin(CandidateIterator::Next next, Instant began) {
     live.channel = state_.channels.open(live.candidate,
                                         std::min(end - began, Duration(kOpeningPatience)), reached);
     {
-      const State::Watch watch(state_, interface_, live.candidate, end);
+      const entity::OverdueCsps::Watch watch(state_.overdue, interface_, live.candidate, end);
       live.work =
           task_.begin(live.channel, std::max(Duration::zero(), end - reached), live.candidate);
     }
