@@ -29,7 +29,7 @@ class LinkReceiver : public calls::Receiver, public Inbox {
   // The listener may outlive this, once it has left its turn.
   void on_message(Link& link, std::span<const std::byte> message, calls::Turn& turn) override {
     if (dds::has_representation(message, representation_)) {
-      listener_.on_message({message, link.peer(), link.lent(), &turn});
+      listener_.on_message({message, link.peer(), link.in().lent(), &turn});
     } else {
       ++malformed_;
     }
@@ -65,41 +65,42 @@ class LinkSender final : public calls::Sender {
 
   void send(std::span<const std::byte> message, const std::function<Duration()>& left) override {
     dds::check_size(message.size(), "a message");
-    conclude(link_ ? link_->send(message, patience(message.size(), left ? &left : nullptr))
-                   : Link::Sent::Ended);
+    conclude(link_ ? link_->out().send(message, patience(message.size(), left ? &left : nullptr))
+                   : LinkWriter::Sent::Ended);
   }
 
   bool send_lending(std::span<const std::byte> message, const std::shared_ptr<LoanMemory>& value,
                     std::size_t position) override {
     dds::check_size(message.size() + sizeof(LoanNote), "a message");
-    const auto sent =
-        link_ ? link_->send_lending(message, value, position, patience(message.size(), nullptr))
-              : std::optional(Link::Sent::Ended);
+    const auto sent = link_ ? link_->out().send_lending(message, value, position,
+                                                        patience(message.size(), nullptr))
+                            : std::optional(LinkWriter::Sent::Ended);
     if (sent) conclude(*sent);
     return sent.has_value();
   }
 
   bool await_taken(std::chrono::milliseconds timeout) override {
-    return !link_ || link_->await_taken(saturating_sum(std::chrono::steady_clock::now(), timeout));
+    return !link_ ||
+           link_->out().await_taken(saturating_sum(std::chrono::steady_clock::now(), timeout));
   }
 
   Guid identity() const override { return link_ ? link_->own() : Guid{}; }
 
  private:
   // A large message needs time in proportion, which a receiver that takes little must not stretch.
-  Link::Patience patience(std::size_t size, const std::function<Duration()>* left) const {
+  LinkWriter::Patience patience(std::size_t size, const std::function<Duration()>* left) const {
     constexpr std::size_t kSlowestReceiver = 16 << 10;  // octets in a millisecond
     return {calls::kPatience + std::chrono::milliseconds(size / kSlowestReceiver), on_full_, left};
   }
 
-  void conclude(Link::Sent sent) const {
+  void conclude(LinkWriter::Sent sent) const {
     switch (sent) {
-      case Link::Sent::Yes:
+      case LinkWriter::Sent::Yes:
         return;
-      case Link::Sent::NoRoom:
+      case LinkWriter::Sent::NoRoom:
         throw Overloaded("the other side has not taken the message from its memory in time: " +
                          std::to_string(calls::kPatience.count()) + " ms, and 1 s for each 16 MB");
-      case Link::Sent::Ended:
+      case LinkWriter::Sent::Ended:
         if (must_arrive_) throw Unavailable("the connection has ended; nothing was sent");
     }
   }

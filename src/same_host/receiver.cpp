@@ -64,14 +64,15 @@ class Receiver::OwnTurn final : public calls::Turn {
  public:
   OwnTurn(Taker& taker, Link& link, Bytes& spare, std::unique_lock<std::mutex>& lock)
       : taker_(taker), link_(link), spare_(spare), lock_(lock) {
-    if (taker.who != Who::Caller) answering_.emplace(link, taker.sleepers, taker.others_wait);
+    if (taker.who != Who::Caller)
+      answering_.emplace(link.out(), link.in().ring(), taker.sleepers, taker.others_wait);
   }
 
   // The receiver stands in for a consumer, and nobody for the receiver.
   bool leave() override {
     if (left()) return true;
     if (taker_.who != Who::Consumer) return false;
-    link_.release(spare_);
+    link_.in().release(spare_);
     lock_.unlock();
     taker_.left = taker_.lead->leave();
     return true;
@@ -84,7 +85,7 @@ class Receiver::OwnTurn final : public calls::Turn {
   Link& link_;
   Bytes& spare_;
   std::unique_lock<std::mutex>& lock_;
-  std::optional<Link::Answering> answering_;
+  std::optional<LinkWriter::Answering> answering_;
 };
 
 // Once it is over, the inbox and the receiver may be gone.
@@ -99,28 +100,28 @@ class Receiver::Entry final : public calls::CallerDelivery {
 
   void lend() override {
     if (pauses % 2 != 0) ++pauses;
-    link->in().lend();
+    link->in().ring().lend();
   }
   void pause() override {
     if (pauses % 2 == 0) ++pauses;
     news->tell_of_pause();
   }
   void take_back() override {
-    if (link->in().take_back()) news->tell_of_changes();
+    if (link->in().ring().take_back()) news->tell_of_changes();
   }
   // Who unwound from it would leave the call's result to be written where it was.
   void deliver_until(const std::function<bool()>& over_) noexcept override;
   void wake() override {
     called = true;
     if (!sleeps) return;
-    link->in().stay_awake(RingReader::Who::Caller);
-    futex_wake(link->in().word(RingReader::Who::Caller));
+    link->in().ring().stay_awake(RingReader::Who::Caller);
+    futex_wake(link->in().ring().word(RingReader::Who::Caller));
   }
 
   /// For who leads.
   bool has_something() const {
     if (over) return false;
-    return !begun || link->ended() || (link->in().ready() && !link->in().lent());
+    return !begun || link->ended() || (link->in().ring().ready() && !link->in().ring().lent());
   }
 
   const std::shared_ptr<Link> link;
@@ -161,7 +162,7 @@ void Receiver::Entry::deliver_until(const std::function<bool()>& over_) noexcept
 void Receiver::Entry::sleep(const std::function<bool()>& over_) {
   called = false;
   if (over || over_()) return;
-  RingReader& in = link->in();
+  RingReader& in = link->in().ring();
   const bool may_spin = spin.limit() > Duration::zero();
   const Instant begin = may_spin ? std::chrono::steady_clock::now() : Instant();
   const Instant give_up = saturating_sum(begin, spin.budget());
@@ -308,7 +309,7 @@ void Receiver::remove(Inbox& inbox) {
       unfinished_->change(std::exchange(entry->unfinished, 0), 0);
     }
     entry->wake();
-    entry->link->wake_peer(wakes);
+    entry->link->out().wake_peer(wakes);
   }
   news_->tell_of_changes();
 }
@@ -420,7 +421,8 @@ Receiver::Looked Receiver::look_at_all(Taker& taker) {
 // On the thread that leads, or a caller's.
 Receiver::Looked Receiver::look_at(Entry& entry, Bytes& spare, Taker& taker) {
   Link& link = *entry.link;
-  if (entry.over || (entry.begun && !link.in().ready() && !link.ended())) return Looked::Nothing;
+  if (entry.over || (entry.begun && !link.in().ring().ready() && !link.ended()))
+    return Looked::Nothing;
   std::unique_lock lock(entry.mutex);
   if (entry.over) return Looked::Nothing;
   if (!entry.begun.exchange(true)) entry.inbox.on_begin(link);
@@ -428,7 +430,7 @@ Receiver::Looked Receiver::look_at(Entry& entry, Bytes& spare, Taker& taker) {
   int taken = 0;
   try {
     for (; taken < kMessagesInARow; ++taken) {
-      const auto message = link.receive(spare);
+      const auto message = link.in().receive(spare);
       if (!message) break;
       if (entry.unfinished != 0) unfinished_->change(std::exchange(entry.unfinished, 0), 0);
       OwnTurn turn(taker, link, spare, lock);
@@ -437,12 +439,12 @@ Receiver::Looked Receiver::look_at(Entry& entry, Bytes& spare, Taker& taker) {
       if (left && !turn.come_back()) return Looked::Replaced;
       if (taker.sleepers.due()) wake(taker.sleepers);
       if (left) return Looked::Something;
-      link.release(spare);
+      link.in().release(spare);
     }
   } catch (const BrokenRing& error) {
     log(LogLevel::Warning, "same host", error.what());
   }
-  const bool drained = taken == 0 && !link.in().ready();
+  const bool drained = taken == 0 && !link.in().ring().ready();
   const bool too_much = brings_too_much(entry);
   if (too_much) link.close();
   if (link.broken() || too_much ||
@@ -459,7 +461,7 @@ Receiver::Looked Receiver::look_at(Entry& entry, Bytes& spare, Taker& taker) {
 }
 
 bool Receiver::brings_too_much(Entry& entry) {
-  const std::size_t now = entry.link->unfinished();
+  const std::size_t now = entry.link->in().unfinished();
   if (now == entry.unfinished) return false;
   const std::size_t others = unfinished_->change(std::exchange(entry.unfinished, now), now);
   if (now <= unfinished_->most() - std::min(unfinished_->most(), others)) return false;
@@ -478,7 +480,7 @@ void Receiver::wake(Sleepers& sleepers) const {
 
 void Receiver::wake_peers() const {
   Wakes wakes;
-  for (const auto& entry : attended_) entry->link->wake_peer(wakes);
+  for (const auto& entry : attended_) entry->link->out().wake_peer(wakes);
 }
 
 // Until a link has something, or there is a call.
@@ -520,7 +522,7 @@ void Receiver::take_back_paused() {
     if (pauses % 2 == 0) continue;
     if (std::exchange(entry->pauses_seen, pauses) != pauses) {
       news_->paused = true;
-    } else if (entry->link->in().take_back()) {
+    } else if (entry->link->in().ring().take_back()) {
       attend(entry);
     }
   }
@@ -529,7 +531,7 @@ void Receiver::take_back_paused() {
 // From now on the doorbells of all links ring that bring something; unless one has already.
 bool Receiver::may_sleep() {
   std::erase_if(attended_, [](const auto& entry) {
-    entry->attended = entry->has_something() || !entry->link->in().prepare_to_sleep();
+    entry->attended = entry->has_something() || !entry->link->in().ring().prepare_to_sleep();
     return !entry->attended;
   });
   return attended_.empty();

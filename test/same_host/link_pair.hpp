@@ -51,13 +51,13 @@ struct LinkPair {
         std::move(doorbells), Guid::random(), Guid::random(), [] {});
   }
   static void send(same_host::Link& from) {
-    REQUIRE(from.send(std::as_bytes(std::span("1", 1)), std::chrono::hours(1)) ==
-            same_host::Link::Sent::Yes);
+    REQUIRE(from.out().send(std::as_bytes(std::span("1", 1)), std::chrono::hours(1)) ==
+            same_host::LinkWriter::Sent::Yes);
   }
   static void take(same_host::Link& from) {
     Bytes spare;
-    REQUIRE(from.receive(spare));
-    from.release(spare);
+    REQUIRE(from.in().receive(spare));
+    from.in().release(spare);
   }
 };
 

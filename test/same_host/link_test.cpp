@@ -22,18 +22,21 @@ namespace {
 struct Server {
   /// The next request of one, whose client sleeps if it has nothing; whether it still does.
   bool answer_lets_sleep(const LinkPair& connection, bool others_wait = false) {
-    while (!connection.client->in().prepare_to_sleep()) connection.take_answer();
+    while (!connection.client->in().ring().prepare_to_sleep()) connection.take_answer();
     connection.take_request();
-    const Link::Answering answering(*connection.server, sleepers, others_wait);
+    const LinkWriter::Answering answering(connection.server->out(), connection.server->in().ring(),
+                                          sleepers, others_wait);
     connection.answer();
     return sleeps(connection);
   }
-  static bool sleeps(const LinkPair& connection) { return connection.client->in().word() != 0; }
+  static bool sleeps(const LinkPair& connection) {
+    return connection.client->in().ring().word() != 0;
+  }
 
   void wake(std::initializer_list<const LinkPair*> connections) {
     sleepers.clear();
     Wakes wakes;
-    for (const LinkPair* each : connections) each->server->wake_peer(wakes);
+    for (const LinkPair* each : connections) each->server->out().wake_peer(wakes);
   }
 
   bool replaced = false;
@@ -119,9 +122,11 @@ TEST_CASE("a client is woken at once where there is no room for its answer") {
   Server server;
   const std::vector<std::byte> longer(2 * Link::kCapacity);
   connection.request();
-  REQUIRE(connection.client->in().prepare_to_sleep());
-  const Link::Answering answering(*connection.server, server.sleepers, true);
-  CHECK(connection.server->send(longer, std::chrono::milliseconds(1)) == Link::Sent::NoRoom);
+  REQUIRE(connection.client->in().ring().prepare_to_sleep());
+  const LinkWriter::Answering answering(connection.server->out(), connection.server->in().ring(),
+                                        server.sleepers, true);
+  CHECK(connection.server->out().send(longer, std::chrono::milliseconds(1)) ==
+        LinkWriter::Sent::NoRoom);
   CHECK_FALSE(Server::sleeps(connection));
 }
 
@@ -131,7 +136,7 @@ TEST_CASE("a client is woken at once by what is no answer, or comes from another
   for (int i = 0; i < 20; ++i) {
     connection.request();
     connection.request();
-    while (!connection.client->in().prepare_to_sleep()) connection.take_answer();
+    while (!connection.client->in().ring().prepare_to_sleep()) connection.take_answer();
     connection.answer();
     CHECK_FALSE(Server::sleeps(connection));
   }

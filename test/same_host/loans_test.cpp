@@ -273,27 +273,27 @@ TEST_CASE(
       [&](std::shared_ptr<Link> link) { welcomed.set_value(std::move(link)); });
   const auto link = guests.join(provider, Guid::random(), [] {});
   const std::vector<std::byte> filling(1000);
-  while (link->send(filling, Duration::zero()) == Link::Sent::Yes) {
+  while (link->out().send(filling, Duration::zero()) == LinkWriter::Sent::Yes) {
   }
   const auto memory = memory_with('a');
   const std::vector<std::byte> message(500);
-  CHECK(link->send_lending(message, memory, 8, Duration::zero()) == Link::Sent::NoRoom);
+  CHECK(link->out().send_lending(message, memory, 8, Duration::zero()) == LinkWriter::Sent::NoRoom);
   CHECK_FALSE(memory->is_read());
   const auto taken = welcomed.get_future().get();
   Bytes spare;
-  while (taken->receive(spare)) {
-    CHECK_FALSE(taken->lent());
-    taken->release(spare);
+  while (taken->in().receive(spare)) {
+    CHECK_FALSE(taken->in().lent());
+    taken->in().release(spare);
   }
-  CHECK(link->send_lending(message, memory, 8, Duration::zero()) == Link::Sent::Yes);
+  CHECK(link->out().send_lending(message, memory, 8, Duration::zero()) == LinkWriter::Sent::Yes);
   CHECK(memory->is_read());
-  const auto came = taken->receive(spare);
+  const auto came = taken->in().receive(spare);
   REQUIRE(came);
   CHECK(came->size() == message.size());
-  REQUIRE(taken->lent());
-  CHECK(taken->lent()->position == 8);
-  CHECK(holds(*taken->lent(), 'a'));
-  taken->release(spare);
+  REQUIRE(taken->in().lent());
+  CHECK(taken->in().lent()->position == 8);
+  CHECK(holds(*taken->in().lent(), 'a'));
+  taken->in().release(spare);
   CHECK_FALSE(memory->is_read());
 }
 

@@ -170,13 +170,13 @@ TEST_CASE("a client that joins a provider exchanges messages with it both ways")
   const auto guest = host.guest(0);
   CHECK(guest->peer() == client);
   for (const auto& [from, to] : {std::pair(link, guest), std::pair(guest, link)}) {
-    REQUIRE(from->send(octets(1000), 20s) == Link::Sent::Yes);
+    REQUIRE(from->out().send(octets(1000), 20s) == LinkWriter::Sent::Yes);
     Bytes spare;
-    const auto message = to->receive(spare);
+    const auto message = to->in().receive(spare);
     REQUIRE(message);
     CHECK(message->size() == 1000);
-    to->release(spare);
-    CHECK(from->await_taken(soon()));
+    to->in().release(spare);
+    CHECK(from->out().await_taken(soon()));
   }
 }
 
@@ -191,13 +191,13 @@ TEST_CASE(
   const bool by_client = GENERATE(false, true);
   auto& closing = by_client ? link : guest;
   auto& other = by_client ? guest : link;
-  REQUIRE(closing->send(octets(10), 20s) == Link::Sent::Yes);
+  REQUIRE(closing->out().send(octets(10), 20s) == LinkWriter::Sent::Yes);
   closing->close();
   CHECK(eventually([&] { return other->ended(); }));
   CHECK(eventually([&] { return told == 1; }));
   Bytes spare;
-  CHECK(other->receive(spare));
-  CHECK(other->send(octets(10), 20s) == Link::Sent::Ended);
+  CHECK(other->in().receive(spare));
+  CHECK(other->out().send(octets(10), 20s) == LinkWriter::Sent::Ended);
   CHECK(eventually([&] { return host.meeting.counters().guests == 0; }));
 }
 
@@ -249,15 +249,15 @@ TEST_CASE("who waits for room is let go when the other side ends") {
   const auto link = meeting.join(host.provider, Guid::random(), [] {});
   REQUIRE(eventually([&] { return host.guest(0) != nullptr; }));
   std::atomic<bool> waits = false;
-  auto sent = Link::Sent::Yes;
+  auto sent = LinkWriter::Sent::Yes;
   std::thread writer([&] {
     waits = true;
-    sent = link->send(octets(4 * Link::kCapacity), 1h);
+    sent = link->out().send(octets(4 * Link::kCapacity), 1h);
   });
   REQUIRE(eventually([&] { return waits.load(); }));
   host.guest(0)->close();
   writer.join();
-  CHECK(sent == Link::Sent::Ended);
+  CHECK(sent == LinkWriter::Sent::Ended);
 }
 
 TEST_CASE("nobody, another user, and another version are refused with the reason") {

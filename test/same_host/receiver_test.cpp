@@ -85,7 +85,7 @@ struct OneCoreService final : Inbox {
       left = true;
       eventually([&] { return last_may_answer.load(); });
     }
-    if (link.send(std::as_bytes(std::span("1", 1)), 1h) != Link::Sent::Yes) return;
+    if (link.out().send(std::as_bytes(std::span("1", 1)), 1h) != LinkWriter::Sent::Yes) return;
     are_let_sleep = std::ranges::count_if(connections, let_sleep);
   }
   void on_end(Link&) override {}
@@ -96,22 +96,22 @@ struct OneCoreService final : Inbox {
     may_answer = true;
     do {
       connections[0].request();
-      REQUIRE(eventually([&] { return connections[0].client->in().ready(); }));
+      REQUIRE(eventually([&] { return connections[0].client->in().ring().ready(); }));
       connections[0].take_answer();
     } while (taker != thread.get_id());
     are_let_sleep = 0;
     may_answer = left = false;
     for (const auto& each : connections) {
-      while (!each.client->in().prepare_to_sleep()) each.take_answer();
+      while (!each.client->in().ring().prepare_to_sleep()) each.take_answer();
       each.request();
     }
     may_answer = true;
   }
   bool wakes(std::size_t client) const {
-    return eventually([&] { return connections[client].client->in().word() == 0; });
+    return eventually([&] { return connections[client].client->in().ring().word() == 0; });
   }
   static bool let_sleep(const test::LinkPair& connection) {
-    return connection.client->in().ready() && connection.client->in().word() != 0;
+    return connection.client->in().ring().ready() && connection.client->in().ring().word() != 0;
   }
 
   const test::OneCore one_core;
@@ -162,7 +162,7 @@ struct ReceivingHost {
 struct Client {
   explicit Client(ReceivingHost& host) : link(meeting.join(host.provider, id, [] {})) {}
   void send(const std::string& text) {
-    REQUIRE(link->send(std::as_bytes(std::span(text)), 1h) == Link::Sent::Yes);
+    REQUIRE(link->out().send(std::as_bytes(std::span(text)), 1h) == LinkWriter::Sent::Yes);
   }
 
   const Guid id = Guid::random();
@@ -278,10 +278,10 @@ TEST_CASE("clients that were let sleep are woken by the end of the inbox during 
     OneCoreService service;
     service.last_may_answer = false;
     service.call();
-    REQUIRE(eventually([&] { return service.connections[1].client->in().ready(); }));
+    REQUIRE(eventually([&] { return service.connections[1].client->in().ring().ready(); }));
     was_let_sleep = OneCoreService::let_sleep(service.connections[1]) && service.left;
     service.receiver.remove(service);
-    REQUIRE(service.connections[1].client->in().word() == 0);
+    REQUIRE(service.connections[1].client->in().ring().word() == 0);
     return was_let_sleep;
   }));
 }
@@ -560,7 +560,7 @@ TEST_CASE("a receiver's end does not wait for the call of a thread that leads in
              [&](std::shared_ptr<Link> link) { receiver->add(std::move(link), notes); });
   const auto link = guests.join(provider, Guid::random(), [] {});
   const auto send = [&](std::string_view text) {
-    return link->send(std::as_bytes(std::span(text)), 1h) == Link::Sent::Yes;
+    return link->out().send(std::as_bytes(std::span(text)), 1h) == LinkWriter::Sent::Yes;
   };
   const auto delivery = receiver->delivery();
   std::atomic<bool> over{false};
@@ -595,7 +595,7 @@ TEST_CASE("once an inbox is removed, nothing more is put in") {
   client.send("1");
   REQUIRE(eventually([&] { return host.notes.about(client.id).size() == 2; }));
   host.receiver.remove(host.notes);
-  client.link->send(std::as_bytes(std::span("2", 1)), 1h);
+  client.link->out().send(std::as_bytes(std::span("2", 1)), 1h);
   CHECK(host.receiver.links() == 0);
   CHECK(host.notes.about(client.id).size() == 2);
 }
@@ -637,7 +637,7 @@ TEST_CASE("a receiver takes what hundreds of links bring") {
   };
   for (const std::string text : {"1", "2", "3"}) {
     for (const auto& link : links)
-      REQUIRE(link->send(std::as_bytes(std::span(text)), 1h) == Link::Sent::Yes);
+      REQUIRE(link->out().send(std::as_bytes(std::span(text)), 1h) == LinkWriter::Sent::Yes);
     expected.push_back(text);
     for (std::size_t i = 0; i < kLinks; ++i) CHECK(has_all(i));
   }

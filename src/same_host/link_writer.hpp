@@ -1,0 +1,95 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+
+#include "link_state.hpp"
+#include "loans.hpp"
+#include "ring.hpp"
+#include "skein/clock.hpp"
+#include "sleepers.hpp"
+
+namespace skein::same_host {
+
+/// The half of a link that sends. Thread-safe.
+class LinkWriter {
+ public:
+  enum class Sent { Yes, NoRoom, Ended };
+
+  /// `state` is that of the link whose half it is.
+  explicit LinkWriter(LinkState& state)
+      : state_(state), ring_(state.outgoing(), state.doorbells().out) {}
+
+  /// How long all of a message may wait for room. `left`, if any, says how much time its sender
+  /// has; like `on_full` it is called only before the message waits.
+  struct Patience {
+    template <class Rep, class Period>
+    Patience(std::chrono::duration<Rep, Period> longest_) : longest(longest_) {}
+    Patience(Duration longest_, const std::function<void()>& on_full_,
+             const std::function<Duration()>* left_)
+        : longest(longest_), on_full(&on_full_), left(left_) {}
+
+    Duration begin() const;
+
+    Duration longest;
+    const std::function<void()>* on_full = nullptr;
+    const std::function<Duration()>* left = nullptr;
+  };
+
+  /// Sends a message; NoRoom if the other side does not take enough in that time. A ring that is
+  /// found broken ends the link; throws BrokenRing then.
+  Sent send(std::span<const std::byte> message, const Patience& patience);
+  /// The same of one that has left out `value` at `position`, of a client's; nothing where the
+  /// other side cannot read it where it lies.
+  std::optional<Sent> send_lending(std::span<const std::byte> message,
+                                   const std::shared_ptr<LoanMemory>& value, std::size_t position,
+                                   const Patience& patience);
+  /// Waits until the other side has taken everything; false at the deadline and at the end, also
+  /// where the ring is found broken.
+  bool await_taken(Instant deadline);
+  /// The link has ended: a thread that waits here goes on.
+  void note_end() { ring_.wake(); }
+
+  /// While it exists, what this thread sends are answers to what comes in by `requests`, the link's
+  /// other ring. The other side, if it sleeps on this core, becomes one of `sleepers` where there
+  /// are some, or more requests wait: of this link, or `others`'. Then wake_peer() follows.
+  class Answering {
+   public:
+    Answering(const LinkWriter& writer, const RingReader& requests, Sleepers& sleepers,
+              bool others);
+    ~Answering();
+    Answering(const Answering&) = delete;
+    Answering& operator=(const Answering&) = delete;
+
+   private:
+    friend class LinkWriter;
+    bool more_wait() const;
+
+    const LinkWriter& writer_;
+    const RingReader& requests_;
+    Sleepers& sleepers_;
+    const bool others_;
+    const Answering* const outer_;
+  };
+  /// Wakes the other side, where it was let sleep, by the end of `wakes`. From any thread.
+  void wake_peer(Wakes& wakes);
+
+ private:
+  bool let_sleep();
+  Sent write(RingWriter::Part message, const Patience& patience);
+  Lender::Connection lending();
+  void forget(const LoanNote& gone);
+
+  LinkState& state_;
+  std::mutex mutex_;
+  RingWriter ring_;
+  std::atomic<bool> lets_sleep_{false};
+  std::optional<Lender> lender_;
+};
+
+}  // namespace skein::same_host
