@@ -49,14 +49,14 @@ struct Query {
 
 /// Whether the provider says that it is about to leave (R28).
 bool is_leaving(const ServiceDescription& description) noexcept;
-/// Makes it say so.
+/// Makes the description offer them, and loans if `with_loans`.
 void mark_leaving(ServiceDescription& description);
 
 /// Whether the provider says that peers of its host may call it through shared memory (R29).
 bool offers_shared_memory_calls(const ServiceDescription& description) noexcept;
 /// Whether it says, too, that callers may lend it parameters in this way.
 bool takes_loans(const ServiceDescription& description) noexcept;
-/// Makes it say so.
+/// Makes the description offer them, and loans if `with_loans`.
 void offer_shared_memory_calls(ServiceDescription& description, bool with_loans);
 
 /// Why a description is no longer in the table.

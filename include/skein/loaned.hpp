@@ -13,7 +13,8 @@ namespace skein {
 /// A large value that a provider in another process of this host may read where it lies. Passed as
 /// in `survey.store(*image)`, it reaches the provider unchanged, lent or copied; only the time
 /// differs. The fastest call is one that waits for its answer, with one such parameter of 4 KiB or
-/// more, through shared memory, to a provider in C++.
+/// more, through shared memory, to a provider in C++. Up to eight values of a connection can be
+/// lent, each of up to 256 MiB; a copied one must fit into that with the rest of the call.
 ///
 /// Leave it as it is from a call's begin to its answer. If a call ends without one, in_use() tells
 /// whether the provider may still read it. It may be destroyed at any time: readers keep the

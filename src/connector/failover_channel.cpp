@@ -40,7 +40,7 @@ void FailoverChannel::start(const std::shared_ptr<PendingCall>& call, const void
 }
 
 // The caller waits anyway, so its own thread tries one provider after the other, without a copy. It
-// also waits for them itself: a thread of the continuations may be what it keeps busy.
+// does not leave the wait for a provider to the continuations: it may run on their only thread.
 void FailoverChannel::call(const OperationInfo& operation, const void* in, void* out,
                            const CallTime& time) {
   if (hedge_after_ && RetryRule::repeats(operation)) {
@@ -60,8 +60,9 @@ void FailoverChannel::call(const OperationInfo& operation, const void* in, void*
       connection->channel->call(operation, in, out, time);
       return rule.answered();
     } catch (const NotSent&) {
-      if (!RetryRule::moves_unsent(pool_.closed())) throw;
+      if (pool_.closed()) throw;
     } catch (...) {
+      if (!RetryRule::repeats(operation)) throw;
       std::exception_ptr error = std::current_exception();
       const Asked asked{connection->provider, connection->channel};
       if (!rule.admit(error, asked, clock_.now())) std::rethrow_exception(std::move(error));
@@ -74,7 +75,7 @@ bool FailoverChannel::sent(Channel& channel, const std::shared_ptr<PendingCall>&
   try {
     channel.start_here(call, in);
   } catch (const NotSent&) {
-    if (RetryRule::moves_unsent(pool_.closed())) return false;
+    if (!pool_.closed()) return false;
     call->fail(std::current_exception());
   }
   return true;

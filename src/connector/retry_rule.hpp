@@ -27,15 +27,14 @@ struct Asked {
 /// - No provider stands that may be asked: the call waits for one until its deadline, unless a
 ///   provider that stands has failed it (see wanted_after()). none_found() is how that ends.
 ///
-/// Pure: time is an argument. One thread at a time uses it; answered() may come from any.
+/// It has no clock and no lock. One thread at a time uses it; answered() and not_hedged() may come
+/// from any. hedge() and not_hedged() only if hedge_after() is set.
 class RetryRule {
  public:
   /// Whether the operation may run twice.
   static bool repeats(const OperationInfo& operation) {
     return operation.idempotent && !operation.oneway;
   }
-  /// Whether a call that was not sent is made elsewhere.
-  static bool moves_unsent(bool side_has_ended) { return !side_has_ended; }
 
   RetryRule(const OperationInfo& operation, Instant deadline,
             const std::shared_ptr<RetryBudget>& budget, const std::optional<Duration>& hedge_after)

@@ -85,9 +85,13 @@ void WaitingCall::look() {
   std::exception_ptr lack;
   try {
     channel->pool().refuse_if_closed();
-    while (!try_at(*channel, channel->reconnector().acquire(wanted()))) {
+    for (;;) {
+      const ProviderConnection connection = channel->reconnector().acquire(wanted());
+      leave_deadline();  // first: an attempt that fails at once seeks again, and watches it anew
+      if (try_at(*channel, connection)) return;
+      std::lock_guard lock(mutex_);
+      watch_deadline();
     }
-    return leave_deadline();
   } catch (const NoProvider&) {
     lack = std::current_exception();
     note_lack(lack);

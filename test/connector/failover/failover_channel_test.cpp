@@ -283,6 +283,17 @@ TEST_CASE("a call that waits for a provider ends when its caller cancels it, or 
   CHECK(world.provider(1).calls.empty());
 }
 
+TEST_CASE("a call that its next provider refuses at once ends at its deadline if nobody comes") {
+  World world(2);
+  const auto call = world.call(kIdempotent);
+  world.provider(2).while_it_starts = [&] { world.provider(2).withdraw(); };
+  world.provider(1).lose();
+  world.continuations.run_all();
+  CHECK_FALSE(call->finished());
+  world.clock.advance(10s);
+  CHECK(call->finished());
+}
+
 TEST_CASE("a call that was lost for the second time ends, since it may itself be the cause") {
   World world(9);
   const auto call = world.call(kIdempotent);
