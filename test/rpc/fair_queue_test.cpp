@@ -157,32 +157,3 @@ TEST_CASE("what waits beyond its deadline is answered as failed, and none is for
   CHECK(office.failed == std::string(10, 'a'));
   CHECK(office.answered == "b");
 }
-
-TEST_CASE("a call that all threads of a service wait for is refused with the circle's names") {
-  ManualClock clock;
-  ManualExecutor executor;
-  rpc::Service::Options options;
-  options.id = client('s');
-  options.threads = 2;
-  options.name_of = [](const Guid& strand) {
-    return strand == client('s')   ? "Echo of server"
-           : strand == client('m') ? "Relay of middle"
-                                   : "";
-  };
-  const auto service = std::make_shared<rpc::Service>(
-      std::make_shared<::test::LouderEcho::Skeleton>(std::make_shared<skein::test::EchoService>()),
-      executor, clock, options);
-  const Guid s = client('s');
-  const Guid m = client('m');
-  const Guid stranger = client('x');
-  const auto refuse = [&](std::vector<Guid> chain) {
-    Invocation invocation;
-    invocation.chain = std::move(chain);
-    service->refuse_self_wait(invocation);
-  };
-  CHECK_NOTHROW(refuse({s}));
-  CHECK_NOTHROW(refuse({m, s, m}));
-  CHECK_THROWS_WITH(refuse({m, s, m, stranger, s}),
-                    Catch::Contains("(Echo of server -> Relay of middle -> service " +
-                                    stranger.hex() + " -> Echo of server -> the first again)"));
-}

@@ -124,10 +124,11 @@ struct OnArrival {
 
 bool never() { return false; }
 
-void refuse_self_wait(const rpc::Service& service) {
-  rpc::Invocation invocation;
-  invocation.chain = {service.id()};
-  CHECK_THROWS_AS(service.refuse_self_wait(invocation), Unavailable);
+void refuse_self_wait(rpc::Service& service) {
+  const auto invocation = std::make_shared<rpc::Invocation>();
+  invocation->operation = operation_of(service, "echo");
+  invocation->chain = {service.id()};
+  CHECK_THROWS_WITH(service.submit(invocation), Catch::Contains("would wait for itself"));
 }
 
 }  // namespace

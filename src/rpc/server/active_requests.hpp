@@ -5,7 +5,7 @@
 #include <mutex>
 #include <unordered_map>
 
-#include "rpc/service/service.hpp"
+#include "rpc/service/invocation.hpp"
 #include "rpc/wire/wire.hpp"
 #include "skein/detail/call_memory.hpp"
 

@@ -18,6 +18,8 @@
 
 namespace skein::rpc {
 
+class Service;
+
 /// A client of a server: it has a session, or is told why not.
 struct RemoteClient {
   explicit RemoteClient(const std::shared_ptr<ReplyContext>& context)

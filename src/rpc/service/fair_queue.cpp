@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "rpc/service/service.hpp"
+#include "rpc/service/invocation.hpp"
 
 namespace skein::rpc {
 

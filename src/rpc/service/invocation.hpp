@@ -1,0 +1,69 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "rpc/service/outgoing_stream.hpp"
+#include "skein/call_context.hpp"
+#include "skein/clock.hpp"
+#include "skein/detail/action.hpp"
+#include "skein/detail/operation.hpp"
+#include "skein/error.hpp"
+#include "skein/guid.hpp"
+
+namespace skein::rpc {
+
+/// One request as the provider sees it, from whichever transport. It owns its arguments.
+struct Invocation {
+  const OperationInfo* operation = nullptr;
+  /// Keeps what parameters refer to where they were not copied.
+  std::shared_ptr<const void> lent;
+  /// The in struct; freed by the operation's own TypeSupport.
+  std::unique_ptr<void, void (*)(void*)> in{nullptr, [](void*) {}};
+  Guid caller;
+  Guid connection;           ///< With whose other invocations it waits in line.
+  std::uint64_t number = 0;  ///< The connection's own count.
+  Instant arrived;
+  Instant begun;  ///< When the implementation was called.
+  Instant ended;  ///< When the implementation had returned or thrown.
+  Instant deadline;
+  std::vector<Guid> chain;  ///< Who waits for the answer, as the request says.
+  /// The call on whose thread, and for which, this one runs; null where it has a thread of its own.
+  const CallContext* outer = nullptr;
+  std::shared_ptr<Session> session;
+  std::atomic<bool> cancelled{false};
+  /// Where the results go, where the operation is a stream.
+  std::shared_ptr<OutgoingStream> stream;
+  /// Called once, on the thread that executes it: the out struct, or what was thrown; neither at
+  /// the end of a stream.
+  std::function<void(const void* out, std::exception_ptr error)> respond;
+  std::shared_ptr<Invocation> next;  ///< The FairQueue's.
+
+  /// Nobody waits for the answer any more: the implementation hears so (CallContext, StreamSink,
+  /// Reply). Not under a lock.
+  void cancel() {
+    stop(ErrorCode::Cancelled, "its caller waits no longer");
+    tell_cancelled();
+  }
+  /// Without the action of on_cancel().
+  void stop(ErrorCode code, const std::string& why) {
+    cancelled = true;
+    if (stream) stream->stop(code, why);
+  }
+
+  /// Runs `action` when the call is cancelled; at once if it already is. An empty one forgets it.
+  void on_cancel(Action action);
+  void tell_cancelled();
+
+ private:
+  std::mutex action_mutex_;
+  Action action_;
+};
+
+}  // namespace skein::rpc
