@@ -1,7 +1,5 @@
 #include "rpc/client/local_channel.hpp"
 
-#include <algorithm>
-
 #include "rpc/service/call_journal.hpp"
 #include "rpc/wire/common.hpp"
 #include "rpc/wire/conversion.hpp"
@@ -10,55 +8,6 @@
 #include "skein/stream.hpp"
 
 namespace skein::rpc {
-
-/// An invocation that knows its caller.
-struct QueuedCall final : Invocation {
-  QueuedCall(std::shared_ptr<PendingCall> call_, std::shared_ptr<Clock> clock_,
-             std::shared_ptr<CallJournal> journal_, std::string_view service_)
-      : call(std::move(call_)),
-        clock(std::move(clock_)),
-        journal(std::move(journal_)),
-        service(service_) {}
-
-  void end(const void* out, std::exception_ptr error) {
-    clock->cancel(timer);
-    if (!call->claim()) return;
-    try {
-      if (!error && out) convert(*operation->out, out, *call->operation().out, call->out());
-      if (!served_as_called()) error = convert(error, call->operation());
-    } catch (...) {
-      error = std::current_exception();
-    }
-    note_end(error);
-    call->finish(std::move(error));
-  }
-
-  /// Ends it for the caller, and tells the implementation.
-  void give_up(std::exception_ptr error) {
-    if (!call->claim()) return;
-    cancel();
-    note_end(error);
-    call->finish(std::move(error));
-  }
-
-  /// Its caller has ended it.
-  void abandon() {
-    cancel();
-    note_end(std::make_exception_ptr(Cancelled("its caller waits no longer")));
-  }
-
-  void note_end(const std::exception_ptr& error) const {
-    if (journal) journal->note_end(false, connection, number, service, call->operation(), error);
-  }
-
-  bool served_as_called() const { return operation == &call->operation(); }
-
-  const std::shared_ptr<PendingCall> call;
-  const std::shared_ptr<Clock> clock;
-  const std::shared_ptr<CallJournal> journal;
-  const std::string_view service;
-  std::atomic<TimerId> timer{0};
-};
 
 namespace {
 
@@ -126,25 +75,17 @@ LocalChannel::LocalChannel(std::weak_ptr<Service> service, std::shared_ptr<Clock
 
 std::shared_ptr<Service> LocalChannel::service() const {
   auto service = service_.lock();
-  if (service && !closed_) return service;
+  if (service && !queued_.closed()) return service;
   if (service) refuse_closed(*peer_);
   throw NotSent("no connection to " + *peer_ + ": it was withdrawn");
 }
 
 std::optional<ConnectionInfo> LocalChannel::info() const {
   const auto service = service_.lock();
-  if (!service || closed_) return std::nullopt;
-  std::lock_guard lock(mutex_);
-  const auto pending = std::ranges::count_if(queued_, [](const std::weak_ptr<QueuedCall>& weak) {
-    const auto queued = weak.lock();
-    return queued && !queued->call->finished();
-  });
-  return ConnectionInfo{std::string(service->interface_info().name),
-                        service->id(),
-                        "process",
-                        "",
-                        static_cast<std::size_t>(pending),
-                        calls_.load(std::memory_order_relaxed)};
+  if (!service || queued_.closed()) return std::nullopt;
+  return ConnectionInfo{
+      std::string(service->interface_info().name), service->id(), "process", "", queued_.size(),
+      calls_.load(std::memory_order_relaxed)};
 }
 
 void LocalChannel::start(const std::shared_ptr<PendingCall>& call, const void* in) {
@@ -201,44 +142,15 @@ void LocalChannel::note_begin(const Service& service, const OperationInfo& opera
 }
 
 void LocalChannel::disconnect() {
-  for (const auto& queued : close()) queued->call->cancel();
+  for (const auto& queued : queued_.close()) queued->call->cancel();
 }
 
 void LocalChannel::lose(const std::string& how) {
-  for (const auto& queued : close()) {
+  for (const auto& queued : queued_.close()) {
     queued->give_up(std::make_exception_ptr(
         Disconnected("the connection to " + *peer_ + " is gone (" + how + "); whether " +
                      quoted(queued->call->operation()) + " ran is unknown")));
   }
-}
-
-// The calls that have not ended.
-std::vector<std::shared_ptr<QueuedCall>> LocalChannel::close() {
-  std::vector<std::weak_ptr<QueuedCall>> queued;
-  {
-    std::lock_guard lock(mutex_);
-    closed_ = true;
-    queued.swap(queued_);
-  }
-  std::vector<std::shared_ptr<QueuedCall>> calls;
-  for (const auto& weak : queued) {
-    if (auto call = weak.lock()) calls.push_back(std::move(call));
-  }
-  return calls;
-}
-
-// Until disconnect() may have to end it.
-void LocalChannel::remember(const std::shared_ptr<QueuedCall>& call) {
-  std::lock_guard lock(mutex_);
-  if (closed_) refuse_closed(*peer_);
-  if (queued_.size() >= look_at_) {
-    std::erase_if(queued_, [](const std::weak_ptr<QueuedCall>& weak) {
-      const auto queued = weak.lock();
-      return !queued || queued->call->finished();
-    });
-    look_at_ = std::max<std::size_t>(16, 2 * queued_.size());
-  }
-  queued_.push_back(call);
 }
 
 void LocalChannel::enqueue(Service& service, const std::shared_ptr<PendingCall>& call,
@@ -263,7 +175,7 @@ void LocalChannel::enqueue(Service& service, const std::shared_ptr<PendingCall>&
   note_begin(service, call->operation(), number);
   call->set_canceller([invocation] { invocation->abandon(); });
   try {
-    remember(invocation);
+    if (!queued_.add(invocation)) refuse_closed(*peer_);
     invocation->timer = clock_->call_at(call->deadline(), [invocation, peer = peer_] {
       invocation->give_up(too_late(*peer, *invocation->operation));
     });

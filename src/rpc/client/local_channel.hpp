@@ -2,17 +2,15 @@
 
 #include <atomic>
 #include <memory>
-#include <mutex>
 #include <optional>
-#include <vector>
 
+#include "rpc/client/queued_calls.hpp"
 #include "rpc/service/service.hpp"
 #include "skein/detail/channel.hpp"
 
 namespace skein::rpc {
 
 class CallJournal;
-struct QueuedCall;
 
 /// The transport within one process: typed pointers, no bytes. A blocking call to a service with
 /// CallThread::Caller runs on the calling thread, and allocates nothing; all others queue.
@@ -34,7 +32,7 @@ class LocalChannel final : public Channel, public std::enable_shared_from_this<L
   Executor& continuations() const noexcept override { return *continuations_; }
   std::string peer() const override { return *peer_; }
   std::optional<ConnectionInfo> info() const override;
-  bool connected() const override { return !closed_ && !*leaving_; }
+  bool connected() const override { return !queued_.closed() && !*leaving_; }
   void disconnect() override;
   void lose(const std::string& how) override;
 
@@ -46,8 +44,6 @@ class LocalChannel final : public Channel, public std::enable_shared_from_this<L
   std::uint64_t next_number() noexcept;
   void note_begin(const Service& service, const OperationInfo& operation,
                   std::uint64_t number) const;
-  std::vector<std::shared_ptr<QueuedCall>> close();
-  void remember(const std::shared_ptr<QueuedCall>& call);
   void enqueue(Service& service, const std::shared_ptr<PendingCall>& call, const void* in);
 
   const Guid id_ = Guid::random();
@@ -58,11 +54,8 @@ class LocalChannel final : public Channel, public std::enable_shared_from_this<L
   std::shared_ptr<const std::string> peer_;  // shared with calls on their way
   std::shared_ptr<Session> session_;
   std::shared_ptr<const std::atomic<bool>> leaving_;  // the service
-  std::atomic<bool> closed_{false};
   std::atomic<std::uint64_t> calls_{0};
-  mutable std::mutex mutex_;
-  std::vector<std::weak_ptr<QueuedCall>> queued_;  // and what has ended since the last look
-  std::size_t look_at_ = 16;
+  QueuedCalls queued_;
 };
 
 }  // namespace skein::rpc
