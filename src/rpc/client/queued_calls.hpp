@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <exception>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string_view>
@@ -11,6 +13,7 @@
 
 #include "rpc/service/call_journal.hpp"
 #include "rpc/service/invocation.hpp"
+#include "rpc/wire/conversion.hpp"
 #include "skein/clock.hpp"
 #include "skein/detail/channel.hpp"
 #include "skein/error.hpp"
@@ -46,6 +49,11 @@ struct QueuedCall final : Invocation {
     if (journal) journal->note_end(false, connection, number, service, call->operation(), error);
   }
 
+  static bool is_over(const std::weak_ptr<QueuedCall>& weak) {
+    const auto queued = weak.lock();
+    return !queued || queued->call->finished();
+  }
+
   bool served_as_called() const { return operation == &call->operation(); }
 
   const std::shared_ptr<PendingCall> call;
@@ -72,5 +80,48 @@ class QueuedCalls {
   std::vector<std::weak_ptr<QueuedCall>> calls_;  // and what has ended since the last look
   std::size_t look_at_ = 16;
 };
+
+inline void QueuedCall::end(const void* out, std::exception_ptr error) {
+  clock->cancel(timer);
+  if (!call->claim()) return;
+  try {
+    if (!error && out) convert(*operation->out, out, *call->operation().out, call->out());
+    if (!served_as_called()) error = convert(error, call->operation());
+  } catch (...) {
+    error = std::current_exception();
+  }
+  note_end(error);
+  call->finish(std::move(error));
+}
+
+inline bool QueuedCalls::add(const std::shared_ptr<QueuedCall>& call) {
+  std::lock_guard lock(mutex_);
+  if (closed_) return false;
+  if (calls_.size() >= look_at_) {
+    std::erase_if(calls_, QueuedCall::is_over);
+    look_at_ = std::max<std::size_t>(16, 2 * calls_.size());
+  }
+  calls_.push_back(call);
+  return true;
+}
+
+inline std::size_t QueuedCalls::size() const {
+  std::lock_guard lock(mutex_);
+  return static_cast<std::size_t>(std::ranges::count_if(calls_, std::not_fn(QueuedCall::is_over)));
+}
+
+inline std::vector<std::shared_ptr<QueuedCall>> QueuedCalls::close() {
+  std::vector<std::weak_ptr<QueuedCall>> taken;
+  {
+    std::lock_guard lock(mutex_);
+    closed_ = true;
+    taken.swap(calls_);
+  }
+  std::vector<std::shared_ptr<QueuedCall>> open;
+  for (const auto& weak : taken) {
+    if (auto call = weak.lock()) open.push_back(std::move(call));
+  }
+  return open;
+}
 
 }  // namespace skein::rpc

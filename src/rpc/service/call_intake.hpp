@@ -3,12 +3,16 @@
 #include <cstddef>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <string_view>
+#include <utility>
 
 #include "rpc/service/fair_queue.hpp"
 #include "rpc/service/invocation.hpp"
 #include "rpc/service/owed_answers.hpp"
+#include "rpc/service/service_owner.hpp"
 #include "rpc/service/unfinished_calls.hpp"
+#include "skein/error.hpp"
 
 namespace skein::rpc {
 
@@ -36,5 +40,36 @@ class CallIntake {
   mutable std::mutex mutex_;
   FairQueue queue_;
 };
+
+// Accepted under the lock: an invocation that comes before the end is in the queue when close()
+// empties it. Uncounted without the lock, since whoever waits for that holds one of its own.
+inline void CallIntake::add(std::shared_ptr<Invocation> invocation, bool answered_later) {
+  try {
+    std::lock_guard lock(mutex_);
+    if (!calls_.accept()) throw being_withdrawn(service_);
+    if (!queue_.has_room(invocation->connection)) {
+      throw Overloaded("the queue of " + std::string(service_) +
+                       " is full; the call was not executed");
+    }
+    if (answered_later && !owed_.has_room(invocation->connection)) {
+      throw Overloaded(std::string(service_) +
+                       " owes as many answers as it may; the call was not executed");
+    }
+    queue_.push(std::move(invocation));
+  } catch (...) {
+    calls_.note_done();
+    throw;
+  }
+}
+
+inline std::shared_ptr<Invocation> CallIntake::take() {
+  std::lock_guard lock(mutex_);
+  return queue_.pop();
+}
+
+inline std::size_t CallIntake::size() const {
+  std::lock_guard lock(mutex_);
+  return queue_.size();
+}
 
 }  // namespace skein::rpc

@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "rpc/service/outgoing_stream.hpp"
@@ -65,5 +66,25 @@ struct Invocation {
   std::mutex action_mutex_;
   Action action_;
 };
+
+inline void Invocation::on_cancel(Action action) {
+  {
+    std::lock_guard lock(action_mutex_);
+    if (!cancelled) {
+      action_ = std::move(action);
+      return;
+    }
+  }
+  if (action) action();
+}
+
+inline void Invocation::tell_cancelled() {
+  Action action;
+  {
+    std::lock_guard lock(action_mutex_);
+    action = std::move(action_);
+  }
+  if (action) action();
+}
 
 }  // namespace skein::rpc
