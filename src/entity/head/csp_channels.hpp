@@ -7,6 +7,7 @@
 #include "brokerless_discovery/broker.hpp"
 #include "head_parts.hpp"
 #include "skein/discovery.idl.hpp"
+#include "skein/error.hpp"
 
 namespace skein::entity {
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/log.hpp"
 #include "core/wall_clock.hpp"
 #include "dds/port/port.hpp"
 #include "head_run.hpp"

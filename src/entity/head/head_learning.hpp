@@ -15,8 +15,8 @@ namespace skein::entity {
 /// own learns from. Thread-safe.
 class HeadLearning {
  public:
-  /// Reads the history from `file` if it exists; empty: no file. Throws InvalidArgument if it can
-  /// be neither read nor written.
+  /// Reads the history from `file` if it exists; empty: no file. Throws if it cannot be
+  /// read, or could not be written.
   HeadLearning(std::string entity, std::string file);
   /// Writes the history; logs an error if it cannot.
   ~HeadLearning();

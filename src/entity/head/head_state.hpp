@@ -49,7 +49,7 @@ struct Head::State {
   entity::CspChannels channels;
   entity::RunningCsps running;
   entity::OverdueCsps overdue;
-  entity::HeadLearning learning;  // ends first, and writes the history
+  entity::HeadLearning learning;  // last: if another part cannot be made, no history is written
 };
 
 template <class Decide>

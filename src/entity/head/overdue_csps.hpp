@@ -48,8 +48,8 @@ class OverdueCsps {
     const Instant end_;
   };
 
-  /// The CSP did not answer in time; perhaps it has since. It is logged when the CSPs are counted
-  /// next or, unless it `hangs`, one count later.
+  /// The CSP did not answer in time; perhaps it has since. Logged at the next count if it `hangs`,
+  /// otherwise at the one after that, if it has not returned by then.
   void add(const InterfaceInfo& interface, const Candidate& candidate, bool hangs);
 
   /// How many have not returned by now. Logs them, and an error when they become as many as `most`.
@@ -74,7 +74,7 @@ class OverdueCsps {
   std::map<Guid, Overdue> overdue_;
   bool was_degraded_ = false;
   std::vector<const Watch*> watches_;
-  TimerId timer_ = 0;  // armed while there are watches, and until the next round after them
+  TimerId timer_ = 0;  // armed while the end of a watch is to come, and for the next round
 };
 
 }  // namespace skein::entity

@@ -41,17 +41,10 @@ std::optional<std::uint64_t> RunningCsps::begin(const InterfaceInfo& interface,
 
 void RunningCsps::end(const InterfaceInfo& interface, const Candidate& candidate, std::uint64_t run,
                       const Ending& ending, bool hangs) {
-  {
-    std::lock_guard lock(mutex_);
-    std::erase_if(running_, [&](const Running& each) { return each.run == run; });
-    if (!settle(breaker(interface.name, candidate.name), ending, hangs)) return;
-  }
-  warnings_.tell(interface.name, candidate.name, " is in quarantine: " + ending.reason);
-}
-
-// Under the lock. Whether the quarantine begins.
-bool RunningCsps::settle(CircuitBreaker& breaker, const Ending& ending, bool hangs) {
-  if (hangs || ending.fault) {
+  std::lock_guard lock(mutex_);
+  std::erase_if(running_, [&](const Running& each) { return each.run == run; });
+  CircuitBreaker& breaker = this->breaker(interface.name, candidate.name);
+  if (ending.fault) {
     const Instant now = clock_.now();
     const bool was_closed = breaker.state(now) == CircuitBreaker::State::Closed;
     if (hangs) {  // it may be ended
@@ -59,14 +52,13 @@ bool RunningCsps::settle(CircuitBreaker& breaker, const Ending& ending, bool han
     } else {
       breaker.fail(now);
     }
-    return was_closed && breaker.state(now) != CircuitBreaker::State::Closed;
-  }
-  if (ending.outcome == Outcome::Accepted || ending.outcome == Outcome::Refused) {
+    if (was_closed && breaker.state(now) != CircuitBreaker::State::Closed)
+      warnings_.tell(interface.name, candidate.name, " is in quarantine: " + ending.reason);
+  } else if (ending.outcome == Outcome::Accepted || ending.outcome == Outcome::Refused) {
     breaker.succeed();
   } else {
     breaker.end();
   }
-  return false;
 }
 
 std::vector<Head::Current> RunningCsps::list() const {

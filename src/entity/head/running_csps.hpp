@@ -30,7 +30,7 @@ struct Ending {
   std::uint32_t after;    ///< As History::Sample::after.
 };
 
-/// The CSPs that work for a Head now, and the circuit breakers that keep others from it.
+/// The CSPs that work for a Head now, and the circuit breakers that keep work from CSPs that fail.
 /// Thread-safe.
 class RunningCsps {
  public:
@@ -46,7 +46,8 @@ class RunningCsps {
   std::optional<std::uint64_t> begin(const InterfaceInfo& interface, const Candidate& candidate,
                                      std::shared_ptr<const std::string> host, Instant now);
 
-  /// Logs that the CSP is in quarantine if it is from now on, at once if it `hangs`.
+  /// Ends the run. A fault counts against the CSP; one that `hangs` is quarantined at its first.
+  /// Logs the beginning of a quarantine.
   void end(const InterfaceInfo& interface, const Candidate& candidate, std::uint64_t run,
            const Ending& ending, bool hangs);
 
@@ -61,7 +62,6 @@ class RunningCsps {
   };
 
   CircuitBreaker& breaker(std::string_view interface, std::string_view csp);
-  bool settle(CircuitBreaker& breaker, const Ending& ending, bool hangs);
 
   Clock& clock_;
   const CircuitBreaker::Rules rules_;
