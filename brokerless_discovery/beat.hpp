@@ -9,8 +9,8 @@
 
 namespace skein::brokerless_discovery {
 
-/// Asks for descriptions again, and writes this peer's again, when that is due: four times a lease
-/// it looks, on `control`, one look at a time.
+/// Asks for descriptions again, and writes this peer's again, when that is due. It looks four times
+/// a lease, on `control`, one look at a time.
 class Beat {
  public:
   /// Nothing happens any more once `owner` has gone.
@@ -24,7 +24,8 @@ class Beat {
         writer_(writer),
         owner_(owner) {}
 
-  /// Call it after the reader was opened: that may take long, and is no sleep.
+  /// Call it after the reader was opened: to make that the first time may take long, and is no
+  /// sleep.
   void start() {
     last_ = clock_.now();
     arm();

@@ -114,9 +114,9 @@ Broker::Broker(dds::Participant& participant, Clock& clock, Executor& control, P
 
 // The endpoints end here: the participant's end does not wait for the last owner of the state.
 Broker::~Broker() {
-  state_->beat.stop();
   state_->reader.close();
   state_->writer.close();
+  state_->beat.stop();
   state_->processes.close();
   await_sole_owner(state_);
 }

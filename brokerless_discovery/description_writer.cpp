@@ -15,7 +15,12 @@ void DescriptionWriter::add(ServiceDescription description) {
     std::lock_guard lock(mutex_);
     put(std::move(description));
   }
-  tell(provider);
+  try {
+    tell(provider);
+  } catch (...) {
+    withdraw(provider);  // nobody else could, without a Registration
+    throw;
+  }
 }
 
 void DescriptionWriter::leave(const Guid& provider) {
@@ -30,12 +35,12 @@ void DescriptionWriter::leave(const Guid& provider) {
   tell(provider);
 }
 
-// Its own services a peer knows at once, whether or not its writer and its reader have matched.
+// A peer knows its own services whether or not its writer and its reader have matched.
 void DescriptionWriter::put(ServiceDescription description) {
-  table_.change([&](Table& table) { return table.on_description(description, Guid{}); });
   Own& mine = own_[{description.provider}];
   mine.message = idl::encode_message(description);
   mine.description = std::move(description);
+  table_.change([&](Table& table) { return table.on_description(mine.description, Guid{}); });
 }
 
 // The service may have been withdrawn since put().

@@ -21,13 +21,14 @@ class DescriptionWriter {
                     std::chrono::milliseconds lease)
       : participant_(participant), table_(table), observers_(observers), lease_(lease) {}
 
+  /// Nothing is left of the service if this throws.
   void add(ServiceDescription description);
   /// Says that the service is about to leave (R28). A service that is withdrawn meanwhile stays so.
   void leave(const Guid& provider);
   void withdraw(const Guid& provider);
   /// Writes descriptions again (R17, R24): all, or those of `contradicted`.
   void write_again(bool all, const std::set<Guid>& contradicted);
-  /// Ends the writers. Nothing is written any more.
+  /// Forgets the descriptions and ends the writers.
   void close();
 
  private:

@@ -31,7 +31,7 @@ class Observers {
   void remove(const std::shared_ptr<Observer>& observer);
 
   /// Queues the changes. Call it under the table's lock, which gives them their order, and
-  /// tell_later() without any lock.
+  /// tell_later() without it.
   void note(const Table::Changes& changes);
   void tell_later();
 

@@ -714,28 +714,53 @@ TEST_CASE("a Broker's end leaves no endpoint to a timer's action that has not re
   CHECK(gone);
 }
 
-TEST_CASE("the time that a Broker's first reader takes to be made is no sleep", "[R17]") {
-  /// Makes a reader in more than half a lease.
-  struct Slow final : dds::Participant {
-    explicit Slow(World& world_) : world(world_) {}
-    std::unique_ptr<dds::Writer> create_writer(const dds::Topic& topic, const dds::Qos& qos,
-                                               dds::WriterListener listener) override {
-      return plain->create_writer(topic, qos, std::move(listener));
-    }
-    std::unique_ptr<dds::Reader> create_reader(const dds::Topic& topic, const dds::Qos& qos,
-                                               dds::ReaderListener listener) override {
-      world.clock.advance(600ms);
-      return plain->create_reader(topic, qos, std::move(listener));
-    }
-    Guid guid() const override { return plain->guid(); }
+namespace {
 
-    World& world;
-    const std::unique_ptr<dds::Participant> plain = world.network.vendor()->create_participant({});
-  };
+/// Its endpoints are made with delays and errors.
+struct Hindered final : dds::Participant {
+  explicit Hindered(World& world) : plain(world.network.vendor()->create_participant({})) {}
+  std::unique_ptr<dds::Writer> create_writer(const dds::Topic& topic, const dds::Qos& qos,
+                                             dds::WriterListener listener) override {
+    if (before_writer) before_writer();
+    return plain->create_writer(topic, qos, std::move(listener));
+  }
+  std::unique_ptr<dds::Reader> create_reader(const dds::Topic& topic, const dds::Qos& qos,
+                                             dds::ReaderListener listener) override {
+    if (before_reader) before_reader();
+    return plain->create_reader(topic, qos, std::move(listener));
+  }
+  Guid guid() const override { return plain->guid(); }
+
+  const std::unique_ptr<dds::Participant> plain;
+  std::function<void()> before_writer;
+  std::function<void()> before_reader;
+};
+
+}  // namespace
+
+TEST_CASE("nothing is left of a service that could not be described to others") {
   World world;
   ManualExecutor control;
   ProcessWatch watch;
-  Slow participant(world);
+  Hindered participant(world);
+  participant.before_writer = [] { throw Unavailable("no writer is left"); };
+  Broker broker(participant, world.clock, control, watch,
+                {"uav-1", "navigator", "loopback", 1000ms});
+  auto service = description(1, "A/INavigator", "navigator");
+  service.provider = broker.new_provider().bytes;
+  CHECK_THROWS_AS(broker.add_service(service), Unavailable);
+  CHECK(broker.all().empty());
+  participant.before_writer = nullptr;
+  const auto registration = broker.add_service(service);
+  CHECK(broker.all().size() == 1);
+}
+
+TEST_CASE("the time that a Broker's first reader takes to be made is no sleep", "[R17]") {
+  World world;
+  ManualExecutor control;
+  ProcessWatch watch;
+  Hindered participant(world);
+  participant.before_reader = [&] { world.clock.advance(600ms); };  // more than half a lease
   Broker broker(participant, world.clock, control, watch,
                 {"uav-1", "navigator", "loopback", 1000ms});
   const Peer ground(world, "ground");
