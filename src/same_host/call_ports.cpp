@@ -29,7 +29,7 @@ class LinkReceiver : public calls::Receiver, public Inbox {
   // The listener may outlive this, once it has left its turn.
   void on_message(Link& link, std::span<const std::byte> message, calls::Turn& turn) override {
     if (dds::has_representation(message, representation_)) {
-      listener_.on_message({message, link.peer(), link.in().lent(), &turn});
+      listener_.on_message({message, link.peer(), link.in().lent_value(), &turn});
     } else {
       ++malformed_;
     }

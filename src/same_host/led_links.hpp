@@ -29,7 +29,7 @@ class LedLinks {
   void begin();
   /// `added` are new; others are over, have ended, or were taken back.
   void take_in(const Links& added);
-  /// Takes some messages of each link that has some. Once replaced, it may be gone.
+  /// Takes some messages of each link that has some. Once replaced, this may be gone.
   ReceivedLink::Looked look(Taker& taker);
   /// Attends links whose doorbells rang; whether any did.
   bool listen() { return attend_rung(std::chrono::milliseconds(0)); }

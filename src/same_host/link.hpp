@@ -26,8 +26,8 @@ class Ending {
   std::function<void()> action_;
 };
 
-/// One connection as one side sees it: a ring each way, of which one half writes and the other
-/// reads, and the state that both share.
+/// One connection as one side sees it: a half that writes to one ring, a half that reads from the
+/// other, and the state that both share.
 class Link : public LinkState {
  public:
   /// `own` and `peer` are the endpoints' identities on this side and the other. `notify` is called

@@ -12,8 +12,8 @@
 
 namespace skein::same_host {
 
-/// The half of a link that receives. Messages are for one thread at a time; unfinished() and what
-/// ring() has for all are thread-safe.
+/// The half of a link that receives. Messages are for one thread at a time; unfinished() and, of
+/// ring(), all but take() are thread-safe.
 class LinkReader {
  public:
   /// `state` is that of the link whose half it is.
@@ -26,7 +26,7 @@ class LinkReader {
   std::optional<std::span<const std::byte>> receive(Bytes& spare);
   void release(Bytes& spare);
   /// What the message has left out, as valid as it; or null.
-  const calls::LentValue* lent() const noexcept { return lent_ ? &*lent_ : nullptr; }
+  const calls::LentValue* lent_value() const noexcept { return lent_ ? &*lent_ : nullptr; }
   /// Octets that have come of a message without its end.
   std::size_t unfinished() const noexcept { return unfinished_; }
 

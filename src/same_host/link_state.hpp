@@ -34,6 +34,7 @@ class LinkState : public std::enable_shared_from_this<LinkState> {
   LinkState& operator=(const LinkState&) = delete;
 
   const DoorbellPair& doorbells() const noexcept { return doorbells_; }
+  const std::shared_ptr<const FileDescriptor>& socket() const noexcept { return socket_; }
 
   /// Both sides learn of the end. Nothing more is sent; what the other side has sent before can
   /// still be received. Twice is no error.
@@ -48,7 +49,6 @@ class LinkState : public std::enable_shared_from_this<LinkState> {
   RingPlace outgoing() const;
   RingPlace incoming() const;
   LoanCounts& loans() const;
-  const std::shared_ptr<const FileDescriptor>& socket() const noexcept { return socket_; }
   const std::shared_ptr<const SharedMemory>& memory() const noexcept { return memory_; }
 
  protected:

@@ -26,7 +26,7 @@ class Offer {
   /// Gives the link to its reader, before the client can write; then hands the client the memory
   /// and this side's doorbell. Closes the link if either fails, or the offer has been withdrawn.
   void welcome(const std::shared_ptr<Link>& link, const FileDescriptor& memory);
-  /// `welcome` is not running, and will not run. No other thread may use the socket any more.
+  /// `welcome` is not running, and will not run. Call it once no other thread uses the socket.
   void withdraw();
 
   const Guid provider;

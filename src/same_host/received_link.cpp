@@ -64,12 +64,12 @@ void ReceivedLink::take_back() {
   if (link->in().ring().take_back()) news_->tell_of_changes();
 }
 
-void ReceivedLink::deliver_until(const std::function<bool()>& over) noexcept {
+void ReceivedLink::deliver_until(const std::function<bool()>& done) noexcept {
   thread_local Bytes spare;
   Taker taker(Taker::Who::Caller);
   if (has_caller_.exchange(true)) return take_back();
-  while (!over_ && !over()) {
-    if (look(spare, taker) == Looked::Nothing) sleep(over);
+  while (!over_ && !done()) {
+    if (look(spare, taker) == Looked::Nothing) sleep(done);
   }
   has_caller_ = false;
   if (over_) take_back();
@@ -82,9 +82,9 @@ void ReceivedLink::wake() {
   futex_wake(link->in().ring().word(RingReader::Who::Caller));
 }
 
-void ReceivedLink::sleep(const std::function<bool()>& over) {
+void ReceivedLink::sleep(const std::function<bool()>& done) {
   called_ = false;
-  if (over_ || over()) return;
+  if (over_ || done()) return;
   RingReader& in = link->in().ring();
   const bool may_spin = spin_.limit() > Duration::zero();
   const Instant begin = may_spin ? std::chrono::steady_clock::now() : Instant();

@@ -49,7 +49,7 @@ class Unfinished {
   std::atomic<std::size_t> all_{0};
 };
 
-/// What wakes the thread that leads a receiver, which it outlives, for links that do.
+/// Wakes the thread that leads a receiver. Outlives the receiver, as links may.
 struct ReceiverNews {
   void tell_of_changes() {
     changed = true;
@@ -108,7 +108,7 @@ class ReceivedLink final : public calls::CallerDelivery {
   void pause() override;
   void take_back() override;
   // Who unwound from it would leave the call's result to be written where it was.
-  void deliver_until(const std::function<bool()>& over) noexcept override;
+  void deliver_until(const std::function<bool()>& done) noexcept override;
   void wake() override;
 
   /// Whether it has something for the leading thread.
@@ -134,7 +134,7 @@ class ReceivedLink final : public calls::CallerDelivery {
 
  private:
   bool brings_too_much();
-  void sleep(const std::function<bool()>& over);
+  void sleep(const std::function<bool()>& done);
 
   const std::shared_ptr<Unfinished> unfinished_;
   const std::shared_ptr<ReceiverNews> news_;

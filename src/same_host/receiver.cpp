@@ -180,7 +180,7 @@ bool Receiver::lead(Taker::Who who, const std::function<bool()>& over) {
 // What was new, has ended, or was taken back.
 void Receiver::take_in_changes() {
   LedLinks::Links added;
-  LedLinks::Links ended;  // which may end with them: not under the lock
+  LedLinks::Links ended;  // may be the last to hold their links: not under the lock
   {
     std::lock_guard lock(mutex_);
     added.swap(added_);

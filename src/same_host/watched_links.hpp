@@ -19,10 +19,11 @@ class WatchedLinks {
   /// `epoll` outlives it.
   explicit WatchedLinks(const FileDescriptor& epoll) : epoll_(epoll) {}
 
-  /// Known by two numbers of the epoll, from `last_id` on. `guest`, if any, is the process whose
-  /// link it is. Throws Unavailable if the kernel refuses.
+  /// The link is known by two numbers of the epoll, the two after `last_id`. `guest`, if any, is
+  /// the process whose link it is. Throws Unavailable if the kernel refuses.
   void add(const std::shared_ptr<Link>& link, std::optional<pid_t> guest, std::uint64_t& last_id);
-  /// The one that is known by this number has ended. It is returned if anybody uses it still.
+  /// The link that is known by this number has ended. Returns it if anybody uses it still; null
+  /// also for an unknown number.
   std::shared_ptr<Link> remove(std::uint64_t id);
 
   std::size_t guests() const { return guests_; }

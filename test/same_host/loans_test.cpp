@@ -282,7 +282,7 @@ TEST_CASE(
   const auto taken = welcomed.get_future().get();
   Bytes spare;
   while (taken->in().receive(spare)) {
-    CHECK_FALSE(taken->in().lent());
+    CHECK_FALSE(taken->in().lent_value());
     taken->in().release(spare);
   }
   CHECK(link->out().send_lending(message, memory, 8, Duration::zero()) == LinkWriter::Sent::Yes);
@@ -290,9 +290,9 @@ TEST_CASE(
   const auto came = taken->in().receive(spare);
   REQUIRE(came);
   CHECK(came->size() == message.size());
-  REQUIRE(taken->in().lent());
-  CHECK(taken->in().lent()->position == 8);
-  CHECK(holds(*taken->in().lent(), 'a'));
+  REQUIRE(taken->in().lent_value());
+  CHECK(taken->in().lent_value()->position == 8);
+  CHECK(holds(*taken->in().lent_value(), 'a'));
   taken->in().release(spare);
   CHECK_FALSE(memory->is_read());
 }
