@@ -101,8 +101,8 @@ TEST_CASE_METHOD(Desk, "close() tells those inside, and await_end() sees them go
 }
 
 // close() stops streams under the lock of UnfinishedCalls, and a stream without credit asks under
-// its own whether others wait. So what the intake does may take neither.
-TEST_CASE_METHOD(Desk, "calls are queued, taken and refused while close() holds its lock") {
+// its own whether others wait. So the intake may take neither while it holds its own.
+TEST_CASE_METHOD(Desk, "calls are queued and taken while UnfinishedCalls holds its lock") {
   rpc::Invocation inside;
   const rpc::UnfinishedCalls::Running running(calls, inside);
   std::size_t waiting = 0;

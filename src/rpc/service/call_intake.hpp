@@ -42,7 +42,8 @@ class CallIntake {
 };
 
 // Accepted under the lock: an invocation that comes before the end is in the queue when close()
-// empties it. Uncounted without the lock, since whoever waits for that holds one of its own.
+// empties it. note_done() comes after the lock was given back: it may take
+// the lock of UnfinishedCalls, which comes before this one. Locking does not throw.
 inline void CallIntake::add(std::shared_ptr<Invocation> invocation, bool answered_later) {
   try {
     std::lock_guard lock(mutex_);

@@ -219,7 +219,8 @@ void Execution::run_deferred(const std::shared_ptr<Invocation>& invocation) {
   try {
     enter(*invocation->operation, *invocation, [&] {
       const auto deferred = make_shared_in_call_memory<Deferred>(*this, invocation);
-      if (!parts_.owed.add(*deferred, invocation->connection))
+      // A call that close() has not found here was not begun, and may be made elsewhere.
+      if (parts_.calls.closed() || !parts_.owed.add(*deferred, invocation->connection))
         return deferred->withdraw(
             std::make_exception_ptr(being_withdrawn(parts_.accounts.interface.name)));
       try {

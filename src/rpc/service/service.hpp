@@ -27,9 +27,9 @@ struct ServiceStatistics;
 namespace skein::rpc {
 
 /// A provided service, whatever transport its calls come by: the implementation and the threads
-/// that run it. Expired and cancelled invocations are dropped unexecuted. It has no lock of its
-/// own: each part has one. The parts' order of locks is UnfinishedCalls, a stream, CallIntake,
-/// OwedAnswers.
+/// that run it. Expired and cancelled invocations are dropped unexecuted. Its locks are in its
+/// parts; if one is taken under another, the order is UnfinishedCalls, a stream, CallIntake,
+/// OwedAnswers. ServiceOwner's and CallerTurns' are taken with no other held.
 class Service : public std::enable_shared_from_this<Service> {
  public:
   struct Options {

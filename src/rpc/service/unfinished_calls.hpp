@@ -16,8 +16,9 @@ namespace skein::rpc {
 class OwedAnswers;
 
 /// The calls that a service has to finish before it may end: those it has accepted, and those that
-/// are inside the implementation. Decides whether the service is closed. Thread-safe; only close()
-/// and finish() use another part while they hold the lock: streams, and OwedAnswers.
+/// are inside the implementation. Decides whether the service is closed. Thread-safe; while
+/// they hold the lock, only close() and finish() use another part (streams, OwedAnswers), and
+/// count() runs its predicate.
 class UnfinishedCalls {
  public:
   /// Once `leaving` is true, finish() and await_end() hear of each call that ends.
