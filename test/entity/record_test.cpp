@@ -9,8 +9,8 @@
 #include <limits>
 #include <mutex>
 
-#include "entity/head/decision_log.hpp"
 #include "entity/entity_access.hpp"
+#include "entity/head/decision_log.hpp"
 #include "office.hpp"
 #include "rpc/service/introspection_topic.hpp"
 #include "skein/detail/type_support.hpp"
