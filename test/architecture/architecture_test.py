@@ -8,6 +8,7 @@ import sys
 import tempfile
 import unittest
 
+import additions
 import budget_rules
 import class_functions
 import compile_rules
@@ -200,6 +201,49 @@ class ClassFunctions(unittest.TestCase):
             };
             struct Plain { void run(); };
         ''')), [("Channel::State", 3, True), ("Entry", 1, False), ("Plain", 1, False)])
+
+
+class Additions(TreeTest):
+    TREE = {
+        "CMakePresets.json": '{"version": 6, "configurePresets": [{"name": "default", "generator": "Ninja", "binaryDir": "build"}]}',
+        "CMakeLists.txt": "cmake_minimum_required(VERSION 3.25)\nproject(x NONE)\nenable_testing()\n"
+                          "add_custom_target(a COMMAND test -e ${PROJECT_SOURCE_DIR}/a)\n"
+                          "add_test(NAME says_b COMMAND grep -q b ${PROJECT_SOURCE_DIR}/list)\n",
+        "list": "one two two\n",
+    }
+    LINE, FILE = additions.Edit("list", after="one", text="b"), additions.NewFile("a", text="")
+
+    def setUp(self):
+        super().setUp()
+        for path, text in self.TREE.items():
+            self.write(path, text)
+
+    def counted(self, most, *edits):
+        return additions.count(self.root, {"x": {"MOST": most, "EDITS": edits}})
+
+    def test_edits_are_made_where_they_say(self):
+        line = additions.Edit("list", before="one", text="zero ")
+        self.assertEqual(additions.edited(self.root, (self.LINE, self.FILE, line)), {"list": "zero oneb two two\n", "a": ""})
+
+    def test_as_many_places_as_allowed_are_not_found(self):
+        self.assertFindsNothing(self.counted(2, self.LINE, self.FILE))
+
+    def test_more_places_are_found(self):
+        self.assertFinds(self.counted(1, self.LINE, self.FILE), "x: 2 places", "1 are allowed")
+
+    def test_edits_that_do_not_fit_are_found(self):
+        for edit, problem in ((additions.Edit("list", after="two", text=""), "list: has 2 times: 'two'"),
+                              (additions.Edit("list", after="three", text=""), "list: has 0 times"),
+                              (additions.Edit("none", after="one", text=""), "none: has 0 times"),
+                              (additions.NewFile("list", text=""), "list: exists already")):
+            self.assertFinds(self.counted(1, edit), problem)
+
+    def test_only_what_builds_and_passes_with_its_edits_is_an_addition(self):
+        build = os.path.join(self.root, "build")
+        for passes, edits in ((True, (self.LINE, self.FILE)), (False, (self.LINE,)), (False, (self.FILE,))):
+            kind = {"EDITS": edits, "TARGETS": ("a",), "TESTS": "says_b"}
+            self.assertEqual(additions.attempt(self.root, self.TREE, build, "x", kind) == 0, passes, edits)
+            self.assertEqual(os.listdir(build), [])
 
 
 class MissionLines(TreeTest):
