@@ -168,7 +168,7 @@ std::shared_ptr<const SelectionStrategy> make_fixed_order_selection();
 /// where enough is left for the best one. Name: `learned`.
 std::shared_ptr<const SelectionStrategy> make_learned_selection();
 
-/// The selection strategies by name; the three above from the start.
+/// The selection strategies by name; those above from the start.
 class StrategyFactory {
  public:
   StrategyFactory();
