@@ -6,6 +6,7 @@ import re
 import sys
 
 import component
+import model
 import names
 from back_end.ada_names import Clash
 from compilation import Compilation
@@ -43,7 +44,7 @@ def _arguments():
     options.add_argument("--namespace", metavar="NAME", type=_namespace, default=(),
                          help="put all C++ names into this namespace, `a::b`; included files must be compiled with the same")  # fmt: skip
     options.add_argument("--depfile", metavar="FILE", help="write what the output depends on, as make and ninja read it")
-    options.add_argument("--language", choices=("ada", "c", "c++", "java", "python"), default="c++",
+    options.add_argument("--language", choices=tuple(model.LANGUAGES), default="c++",
                          help="`c`: x.idl becomes x.idl.h and x.idl.c; `python`: x_idl.py and x_idl.pyi; `ada`: x_idl.ads and x_idl.adb; default: c++")  # fmt: skip
     options.add_argument("--check", action="store_true", help="write nothing, say every problem, and count the accepted files")
     arguments = options.parse_args()

@@ -79,6 +79,9 @@ class Compilation:
             all_items=[item for item in self._built.all_items if item.place.file not in self._built.broken],
             included=self._source.included,
         )
+        analysis.check_language(file.items, language, self._report)
+        if not self.accepted:
+            return
         base = os.path.join(folder, name)
         made = c_output if language == "c" else output
         of_its_own = {"ada": ada_output, "java": java_output, "python": python_output}

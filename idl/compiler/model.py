@@ -1,5 +1,6 @@
 """The IDL file as the templates see it: types and declarations."""
 
+import dataclasses
 from dataclasses import dataclass, field
 
 # ---- types ---------------------------------------------------------------------------------------
@@ -22,66 +23,113 @@ PRIMITIVES = {  # IDL: (C++, size, initial value)
 }
 
 
+LANGUAGES = {"ada": "Ada", "c": "C", "c++": "C++", "java": "Java", "python": "Python"}
+
+
+class Kind:
+    """A type where it is used. A template says here what a walk through types asks, so that no such walk names templates."""
+
+    keyword = ""  # of IDL, before `<`
+    cpp = ""  # the C++ type, by the types that it consists of and its fields
+    header = ""  # of C++, which that needs
+    described = -1  # its types::Kind, see idl/skein/types.idl
+    holds_all = False  # whether a value always contains one of each type that it consists of
+    languages = ("c++",)  # that have it
+    bound = 0
+
+    @property
+    def parts(self):
+        """The types that it consists of, by their names here."""
+        return {name: part for name, part in vars(self).items() if isinstance(part, Kind)}
+
+    @property
+    def consists_of(self):
+        return list(self.parts.values())
+
+    def rebuilt(self, change):
+        """The same template of what `change` makes of its types."""
+        return dataclasses.replace(self, **{name: change(part) for name, part in self.parts.items()})
+
+    def walk(self):
+        """It, and all that it consists of, as far as no name stands for it."""
+        yield self
+        for part in self.consists_of:
+            yield from part.walk()
+
+
 @dataclass(frozen=True)
-class Primitive:
+class Primitive(Kind):
     idl: str
+    languages = LANGUAGES
 
 
 @dataclass(frozen=True)
-class String:
+class String(Kind):
     bound: int
+    keyword, cpp, described, languages = "string", "std::string", 14, LANGUAGES
 
 
 @dataclass(frozen=True)
-class WideString:
+class WideString(Kind):
     bound: int
+    keyword, cpp, described, languages = "wstring", "std::wstring", 15, LANGUAGES
 
 
 @dataclass(frozen=True)
-class Map:
-    key: object
-    value: object
+class Map(Kind):
+    key: Kind
+    value: Kind
     bound: int
+    keyword, cpp, header, described, languages = "map", "std::map<{}, {}>", "<map>", 18, LANGUAGES
 
 
 @dataclass(frozen=True)
-class Optional:
+class Optional(Kind):
     """A member that may be absent."""
 
-    element: object
+    element: Kind
+    cpp, header, described, languages = "std::optional<{}>", "<optional>", 19, LANGUAGES
 
 
 @dataclass(frozen=True)
-class External:
+class External(Kind):
     """A member of a type that contains it: it lies in memory of its own."""
 
-    element: object
+    element: Kind
+    cpp, header, holds_all, languages = "::skein::Box<{}>", '"skein/detail/box.hpp"', True, LANGUAGES
 
 
 @dataclass(frozen=True)
-class Sequence:
-    element: object
+class Sequence(Kind):
+    element: Kind
     bound: int
+    keyword, cpp, described, languages = "sequence", "std::vector<{}>", 16, LANGUAGES
 
 
 @dataclass(frozen=True)
-class Array:
-    element: object
+class Array(Kind):
+    element: Kind
     size: int
+    cpp, described, holds_all, languages = "std::array<{}, {size}>", 17, True, LANGUAGES
 
 
 @dataclass(frozen=True)
-class Named:
+class Named(Kind):
     """A struct, union, enumeration, bitmask, bitset or typedef."""
 
     decl: object
+    described, languages = 20, LANGUAGES
 
 
 @dataclass(frozen=True)
-class Reference:
+class Reference(Kind):
     """An interface where a value is expected: a service reference."""
 
     decl: object
+    described, languages = 21, LANGUAGES
+
+
+TEMPLATES = {kind.keyword: kind for kind in Kind.__subclasses__() if kind.keyword}
 
 
 _GREATEST_ALIGNMENT = 8
@@ -102,11 +150,12 @@ def unaliased(kind):
     return kind
 
 
-def within(kind):
-    """The type of which an array, sequence, optional or external member, or the value of a map, consists; None for any other."""
-    if isinstance(kind, Map):
-        return kind.value
-    return kind.element if isinstance(kind, (Sequence, Array, Optional, External)) else None
+def contained(kind):
+    """The declarations of which a value always contains one: not those within what may be empty or absent."""
+    kind = unaliased(kind)
+    if isinstance(kind, Named):
+        return [kind.decl]
+    return [decl for part in kind.consists_of for decl in contained(part)] if kind.holds_all else []
 
 
 def is_scalar(kind):

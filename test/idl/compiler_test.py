@@ -10,6 +10,7 @@ import sys
 import tempfile
 import time
 import unittest
+from unittest import mock
 
 sys.dont_write_bytecode = True
 from compiler_run import run_compiler
@@ -822,6 +823,25 @@ class Signatures(CompilerTest):
     def test_a_recursive_type_has_a_signature(self):
         text = "struct T; typedef sequence<T> Ts; struct T { Ts c; }; interface I { T f(in T a); };"
         self.assertNotEqual(self.signature(text), self.signature(text.replace("Ts c;", "Ts c; long x;")))
+
+
+class Languages(CompilerTest):
+    IDL = "struct S {\n  long x;\n  @optional map<long, string> m;\n};\ninterface I {\n  void f(\n    in sequence<map<long, S>> a);\n};\n"
+
+    def compile_without_maps(self, language):
+        """As if `map` were new and that language had no form of it yet."""
+        self.compile("struct S { long x; };\n")  # loads the compiler's modules
+        with mock.patch.object(sys.modules["model"].Map, "languages", ("c++",)):
+            return self.compile(self.IDL, arguments=["--language", language])
+
+    def test_a_template_that_a_language_lacks_is_refused_where_it_stands(self):
+        for language, spoken in ("ada", "Ada"), ("c", "C"), ("java", "Java"), ("python", "Python"):
+            with self.subTest(language):
+                refusal = f"error: {spoken} has no form of the type map<…> yet; use a struct, or --language c++\n"
+                self.assertEqual(self.compile_without_maps(language), (1, f"x.idl:3: {refusal}x.idl:6: {refusal}"))
+
+    def test_the_languages_that_have_it_compile_it(self):
+        self.assertEqual(self.compile_without_maps("c++"), (0, ""))
 
 
 class Dependencies(CompilerTest):

@@ -1,6 +1,6 @@
 """Ada types for IDL types, and the code that writes and reads their values."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import model
 
@@ -53,14 +53,14 @@ def otherwise(union):
 
 
 @dataclass(frozen=True)
-class _Boxed:
+class _Boxed(model.Kind):
     """A use of a type within itself."""
 
     decl: object
 
 
 @dataclass(frozen=True)
-class _Alias:
+class _Alias(model.Kind):
     decl: object
     kind: object
 
@@ -69,15 +69,8 @@ def _bare(kind):
     """Without names that typedefs give, and bounds."""
     if isinstance(kind, _Alias):
         return _bare(kind.kind)
-    if isinstance(kind, model.Sequence):
-        return model.Sequence(_bare(kind.element), 0)
-    if isinstance(kind, model.Array):
-        return model.Array(_bare(kind.element), kind.size)
-    if isinstance(kind, model.Map):
-        return model.Map(_bare(kind.key), _bare(kind.value), 0)
-    if isinstance(kind, model.Optional):
-        return model.Optional(_bare(kind.element))
-    return {model.String: model.String(0), model.WideString: model.WideString(0)}.get(type(kind), kind)
+    kind = kind.rebuilt(_bare)
+    return replace(kind, bound=0) if kind.bound else kind
 
 
 def _unaliased(kind):
@@ -116,21 +109,7 @@ class Types:
             return _Boxed(kind.decl) if owner and getattr(kind.decl, "recursive", False) and analysis.reaches(kind.decl, owner) else kind
         if isinstance(kind, model.External):
             return self.fixed(kind.element, owner)
-        if isinstance(kind, model.Sequence):
-            return model.Sequence(self.fixed(kind.element, owner), kind.bound)
-        if isinstance(kind, model.Array):
-            return model.Array(self.fixed(kind.element, owner), kind.size)
-        if isinstance(kind, model.Optional):
-            return model.Optional(self.fixed(kind.element, owner))
-        if isinstance(kind, model.Map):
-            return model.Map(self.fixed(kind.key, owner), self.fixed(kind.value, owner), kind.bound)
-        return kind
-
-    def innermost(self, kind):
-        """The declaration of which a type consists."""
-        while (inner := model.within(kind)) is not None:
-            kind = inner
-        return getattr(kind, "decl", None) if isinstance(kind, model.Named) else None
+        return kind.rebuilt(lambda part: self.fixed(part, owner))
 
     # ---- names
 

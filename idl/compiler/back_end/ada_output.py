@@ -79,8 +79,7 @@ class _Unit:
         if item in self.done:
             return
         self.done.add(item)
-        for other in [] if isinstance(item, model.Interface) else analysis.parts(item):
-            named = self.types.innermost(other)
+        for named in [] if isinstance(item, model.Interface) else [decl for kind in analysis.parts(item) for decl in analysis.named_in(kind)]:
             if named in self.items and self.names.path(named) == self.names.path(item) and not analysis.reaches(named, item):
                 self._add(named)
         outer, self.path = self.path, self.names.path(item) + ((self.names.simple(item),) if isinstance(item, model.Interface) else ())

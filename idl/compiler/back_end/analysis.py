@@ -39,15 +39,27 @@ def analyse(builder, report):
 # ---- recursion
 
 
+def _placed_parts(decl):
+    if isinstance(decl, model.Struct):
+        return [(member.type, member.place) for member in decl.all_members()]
+    if isinstance(decl, model.Union):
+        return [(case.type, case.place) for case in decl.cases] + [(decl.discriminator, decl.place)]
+    return [(decl.type, decl.place)] if isinstance(decl, model.Typedef) else []
+
+
 def parts(decl):
     """The types that a declaration is made of."""
-    if isinstance(decl, model.Struct):
-        return [member.type for member in decl.all_members()]
-    if isinstance(decl, model.Union):
-        return [case.type for case in decl.cases] + [decl.discriminator]
-    if isinstance(decl, model.Typedef):
-        return [decl.type]
-    return []
+    return [kind for kind, _ in _placed_parts(decl)]
+
+
+def check_language(items, language, report):
+    """Refuses templates that the language lacks."""
+    operations = [operation for item in items if isinstance(item, model.Interface) for operation in item.operations]
+    for decl in [*items, *(struct for each in operations for struct in (each.in_struct, each.out_struct))]:
+        for kind, place in _placed_parts(decl):
+            for each in kind.walk():
+                if language not in each.languages:
+                    report.error(place, f"{model.LANGUAGES[language]} has no form of the type {each.keyword}<…> yet; use a struct, or --language c++")
 
 
 def reaches(decl, goal):
@@ -57,12 +69,12 @@ def reaches(decl, goal):
 
 def _reaches(decl, goal, seen):
     for kind in parts(decl):
-        if named := _innermost(kind):
-            if named.decl is goal:
+        for decl in named_in(kind):
+            if decl is goal:
                 return True
-            if named.decl not in seen:
-                seen.add(named.decl)
-                if _reaches(named.decl, goal, seen):
+            if decl not in seen:
+                seen.add(decl)
+                if _reaches(decl, goal, seen):
                     return True
     return False
 
@@ -77,7 +89,7 @@ def _choose_initial_cases(declarations):
 
 
 def _ending_case(union, endless):
-    ending = (case for case in union.cases if (inner := _contained(case.type)) is None or not _is_without_end(inner, endless))
+    ending = (case for case in union.cases if not any(_is_without_end(inner, endless) for inner in model.contained(case.type)))
     return next(ending, None)
 
 
@@ -92,26 +104,16 @@ def _is_without_end(decl, around=frozenset(), ending=None):
         kinds = [decl.initial_case.type]
     else:
         kinds = [member.type for member in decl.all_members()] if isinstance(decl, model.Struct) else []
-    inner = [found for kind in kinds if (found := _contained(kind)) is not None]
+    inner = [found for kind in kinds for found in model.contained(kind)]
     if any(_is_without_end(each, around | {decl}, ending) for each in inner):
         return True
     ending.add(decl)
     return False
 
 
-def _contained(kind):
-    """The declaration of which a value always contains one; None for basic types, and for what may be empty or absent."""
-    kind = model.unaliased(kind)
-    while isinstance(kind, (model.Array, model.External)):
-        kind = model.unaliased(kind.element)
-    return kind.decl if isinstance(kind, model.Named) else None
-
-
-def _innermost(kind):
-    """The declared type that sequences, arrays, maps and optional members are made of; None where there is none."""
-    while (inner := model.within(kind)) is not None:  # the key of a map is no struct
-        kind = inner
-    return kind if isinstance(kind, model.Named) else None
+def named_in(kind):
+    """The declarations that a type names."""
+    return [each.decl for each in kind.walk() if isinstance(each, model.Named)]
 
 
 # ---- operations
@@ -188,8 +190,8 @@ def _find_growing(decl, found, seen):
     seen.add(decl)
     found.update({row[:2]: row for row in growing_members(decl)})
     for kind in parts(decl):
-        if named := _innermost(kind):
-            _find_growing(named.decl, found, seen)
+        for named in named_in(kind):
+            _find_growing(named, found, seen)
 
 
 def _keyed_members(decl):
@@ -207,18 +209,13 @@ def _text(kind, around):
     kind = model.unaliased(kind)
     if isinstance(kind, model.Primitive):
         return kind.idl
-    if isinstance(kind, model.String):
-        return f"string<{kind.bound}>"
-    if isinstance(kind, model.WideString):
-        return f"wstring<{kind.bound}>"
-    if isinstance(kind, model.Optional):
-        return f"optional<{_text(kind.element, around)}>"
     if isinstance(kind, model.External):
         return _text(kind.element, around)
-    if isinstance(kind, model.Map):
-        return f"map<{_text(kind.key, around)},{_text(kind.value, around)},{kind.bound}>"
-    if isinstance(kind, model.Sequence):
-        return f"sequence<{_text(kind.element, around)},{kind.bound}>"
+    if isinstance(kind, model.Optional):
+        return f"optional<{_text(kind.element, around)}>"
+    if kind.keyword:
+        given = [_text(each, around) if isinstance(each, model.Kind) else str(each) for each in vars(kind).values()]
+        return f"{kind.keyword}<{','.join(given)}>"
     if isinstance(kind, model.Array):
         return f"{_text(kind.element, around)}[{kind.size}]"
     if isinstance(kind, model.Reference):
@@ -318,9 +315,7 @@ def uses_xcdr2(decl, seen=None):
     if getattr(decl, "extensibility", "final") != "final":
         return True
     for kind in parts(decl):
-        while not isinstance(kind, model.Optional) and (inner := model.within(kind)) is not None:
-            kind = inner
-        if isinstance(kind, model.Optional) or (isinstance(kind, model.Named) and uses_xcdr2(kind.decl, seen)):
+        if any(isinstance(each, model.Optional) for each in kind.walk()) or any(uses_xcdr2(each, seen) for each in named_in(kind)):
             return True
     return False
 
@@ -370,13 +365,7 @@ def any_bits_are_a_value(decl):
 def bounded(kind):
     """Whether a value of this type, not counting declared types in it, must be checked for a bound."""
     kind = model.unaliased(kind)
-    if isinstance(kind, (model.String, model.WideString, model.Sequence, model.Map)) and kind.bound:
-        return True
-    if isinstance(kind, model.Map):
-        return bounded(kind.key) or bounded(kind.value)
-    if isinstance(kind, (model.Optional, model.External)):
-        return bounded(kind.element)
-    return isinstance(kind, (model.Sequence, model.Array)) and bounded(kind.element)
+    return bool(kind.bound) or any(map(bounded, kind.consists_of))
 
 
 # ---- streams
@@ -429,11 +418,4 @@ def _obstacle(stream, source):
 
 def _resolved(kind):
     """The type without any typedef."""
-    kind = model.unaliased(kind)
-    if isinstance(kind, model.Sequence):
-        return model.Sequence(_resolved(kind.element), kind.bound)
-    if isinstance(kind, model.Array):
-        return model.Array(_resolved(kind.element), kind.size)
-    if isinstance(kind, model.Map):
-        return model.Map(_resolved(kind.key), _resolved(kind.value), kind.bound)
-    return kind
+    return model.unaliased(kind).rebuilt(_resolved)

@@ -74,9 +74,9 @@ def helpers(kind):
         body = [f"typedef struct {pair} {{ {declared_member(kind.key, 'key')}; {declared_member(kind.value, 'value')}; }} {pair};",
                 f"typedef struct {name} {{ const {pair}* data; size_t size; }} {name};"]  # fmt: skip
         return lines + _once(name, body)
-    inner = model.within(kind)
-    if inner is None:
+    if not kind.consists_of:
         return []
+    inner = kind.element
     lines = helpers(inner)
     if isinstance(model.unaliased(inner), model.Array):
         of, size = member_type(inner)

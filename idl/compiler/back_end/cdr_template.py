@@ -44,16 +44,18 @@ def _checks(kind, access, place, depth):
     if getattr(kind, "bound", 0):
         size = f"::skein::idl::utf16({access}).size()" if isinstance(kind, model.WideString) else f"{access}.size()"
         lines.append(f'{indent}checker.check_bound({size}, {kind.bound}, "{place}");')
-    if isinstance(kind, (model.Sequence, model.Array)) and analysis.bounded(kind.element):
+    if not any(map(analysis.bounded, kind.consists_of)):
+        return lines
+    if isinstance(kind, (model.Sequence, model.Array)):
         lines.append(f"{indent}for (const auto& element{depth} : {access}) {{")
         lines += _checks(kind.element, f"element{depth}", place, depth + 1)
         lines.append(f"{indent}}}")
-    if isinstance(kind, model.Map) and (analysis.bounded(kind.key) or analysis.bounded(kind.value)):
+    elif isinstance(kind, model.Map):
         lines.append(f"{indent}for (const auto& pair{depth} : {access}) {{")
-        for part, name in ((kind.key, "first"), (kind.value, "second")):
-            if analysis.bounded(part):
-                lines += _checks(part, f"pair{depth}.{name}", place, depth + 1)
+        lines += _checks(kind.key, f"pair{depth}.first", place, depth + 1) + _checks(kind.value, f"pair{depth}.second", place, depth + 1)
         lines.append(f"{indent}}}")
+    else:
+        lines += [line for name, part in kind.parts.items() for line in _checks(part, f"{access}.{name}", place, depth)]
     return lines
 
 

@@ -6,23 +6,11 @@ import model
 def type_name(kind):
     if isinstance(kind, model.Primitive):
         return model.PRIMITIVES[kind.idl][0]
-    if isinstance(kind, model.String):
-        return "std::string"
-    if isinstance(kind, model.WideString):
-        return "std::wstring"
-    if isinstance(kind, model.Optional):
-        return f"std::optional<{type_name(kind.element)}>"
-    if isinstance(kind, model.External):
-        return f"::skein::Box<{type_name(kind.element)}>"
-    if isinstance(kind, model.Map):
-        return f"std::map<{type_name(kind.key)}, {type_name(kind.value)}>"
-    if isinstance(kind, model.Sequence):
-        return f"std::vector<{type_name(kind.element)}>"
-    if isinstance(kind, model.Array):
-        return f"std::array<{type_name(kind.element)}, {kind.size}>"
     if isinstance(kind, model.Reference):
         return f"::skein::Reference<{kind.decl.cpp}>"
-    return kind.decl.cpp
+    if isinstance(kind, model.Named):
+        return kind.decl.cpp
+    return kind.cpp.format(*map(type_name, kind.consists_of), **vars(kind))
 
 
 def parameter_type(kind):

@@ -8,7 +8,6 @@ from . import analysis
 
 _KINDS = ("boolean", "char", "wchar", "int8", "octet", "short", "unsigned short", "long", "unsigned long", "long long",
           "unsigned long long", "float", "double", "long double")  # fmt: skip
-_STRING, _WSTRING, _SEQUENCE, _ARRAY, _MAP, _OPTIONAL, _DECLARED, _REFERENCE = range(len(_KINDS), len(_KINDS) + 8)
 _KEY, _MUST_UNDERSTAND, _BY_DEFAULT, _EXTERNAL = 1, 2, 4, 8
 _ONEWAY, _IDEMPOTENT, _STREAM, _MAY_LACK = 1, 2, 4, 8
 _DECLARATIONS = {model.Struct: 0, model.Exception_: 1, model.Union: 2, model.Enum: 3, model.Bitmask: 4, model.Bitset: 5}
@@ -106,13 +105,10 @@ def uses(decl):
 
     def visit(kind):
         kind = model.unaliased(kind)
-        if isinstance(kind, model.Map):
-            visit(kind.key)
-            visit(kind.value)
-        elif (inner := model.within(kind)) is not None:
-            visit(inner)
-        elif isinstance(kind, model.Named):
+        if isinstance(kind, model.Named):
             found[kind.decl] = True
+        for part in kind.consists_of:
+            visit(part)
 
     if isinstance(decl, model.Union):
         visit(decl.discriminator)
@@ -147,31 +143,12 @@ class _Cdr:
 
 def _type(cdr, kind):
     kind = model.unaliased(kind)
-    number, bound, name, elements = _parts(kind)
-    cdr.number("B", number)
-    cdr.number("I", bound)
-    cdr.text(name)
-    cdr.sequence(elements, lambda element: _type(cdr, element))
-
-
-def _parts(kind):
-    if isinstance(kind, model.Primitive):
-        return _KINDS.index(kind.idl), 0, "", []
-    if isinstance(kind, model.String):
-        return _STRING, kind.bound, "", []
-    if isinstance(kind, model.WideString):
-        return _WSTRING, kind.bound, "", []
-    if isinstance(kind, model.Sequence):
-        return _SEQUENCE, kind.bound, "", [kind.element]
-    if isinstance(kind, model.Array):
-        return _ARRAY, kind.size, "", [kind.element]
-    if isinstance(kind, model.Map):
-        return _MAP, kind.bound, "", [kind.key, kind.value]
     if isinstance(kind, model.External):
-        return _parts(model.unaliased(kind.element))
-    if isinstance(kind, model.Optional):
-        return _OPTIONAL, 0, "", [kind.element]
-    return (_REFERENCE if isinstance(kind, model.Reference) else _DECLARED), 0, kind.decl.idl_name, []
+        return _type(cdr, kind.element)
+    cdr.number("B", _KINDS.index(kind.idl) if isinstance(kind, model.Primitive) else kind.described)
+    cdr.number("I", kind.size if isinstance(kind, model.Array) else kind.bound)
+    cdr.text(kind.decl.idl_name if hasattr(kind, "decl") else "")
+    cdr.sequence(kind.consists_of, lambda element: _type(cdr, element))
 
 
 def _member(cdr, decl, member):

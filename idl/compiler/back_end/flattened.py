@@ -33,8 +33,13 @@ def exception_member(exception):
     return f"{exception.dds_name[0].lower()}{exception.dds_name[1:]}_ex"
 
 
+def is_struct_here(kind):
+    """Whether a template's types are members of a struct: each element of a map is one."""
+    return len(kind.parts) > 1
+
+
 def pair_name(path):
-    """The struct of a key and a value of the map that stands there: `S_m` for a member, `T` for a typedef."""
+    """The struct of the types of the template that stands there: `S_m` for a member, `T` for a typedef."""
     return path + "_Pair"
 
 
@@ -45,9 +50,7 @@ def _identifier(name):
 
 
 def _is_reference(kind):
-    while (inner := model.within(kind)) is not None:
-        kind = inner
-    return isinstance(kind, model.Reference)
+    return any(isinstance(each, model.Reference) for each in kind.walk())
 
 
 def _uses_reference(item):
@@ -139,11 +142,12 @@ class _Writer:
             return f"sequence<octet, {2 * kind.bound}>" if kind.bound else "sequence<octet>"
         if isinstance(kind, (model.Optional, model.External)):
             return self._type(kind.element, name)
-        if isinstance(kind, model.Map):
+        if is_struct_here(kind):
             pair = pair_name(name)
-            members = [f"  {self._declarator(part, each, pair + '_' + each)}" for part, each in ((kind.key, "key"), (kind.value, "value"))]
+            members = [f"  {self._declarator(part, each, pair + '_' + each)}" for each, part in kind.parts.items()]
             self._pairs += [f"struct {_identifier(pair)} {{", *members, "};"]
-            return f"sequence<{_identifier(pair)}{f', {kind.bound}' if kind.bound else ''}>"
+            pair = _identifier(pair)
+            return f"sequence<{pair}{f', {kind.bound}' if kind.bound else ''}>" if isinstance(kind, model.Map) else pair
         if isinstance(kind, model.String):
             return f"string<{kind.bound}>" if kind.bound else "string"
         if isinstance(kind, model.Sequence):

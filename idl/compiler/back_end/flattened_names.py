@@ -43,18 +43,23 @@ def _names(decl):
         return
     yield decl.dds_name, decl.idl_name, decl.place
     for path, kind in _types(decl):
-        while isinstance(kind, (model.Sequence, model.Array, model.Map, model.Optional)):
-            if isinstance(kind, model.Map):
-                yield flattened.pair_name(path), f"the pairs of {path}", decl.place
-                path, kind = flattened.pair_name(path) + "_value", kind.value
-            else:
-                kind = kind.element
+        for name, pairs in _pairs(path, kind):
+            yield name, f"the pairs of {pairs}", decl.place
     if isinstance(decl, model.Enum) and decl.counted:
         for name, _, _ in decl.enumerators:
             yield name, f"the enumerator {'::'.join([*decl.scope[:-1], name])}", decl.place
     if isinstance(decl, model.Exception_):
         name = flattened.exception_hash(decl)
         yield name, f"{name} of {decl.idl_name}", decl.place
+
+
+def _pairs(path, kind):
+    """The structs that a type needs, and what each is of."""
+    pair = flattened.pair_name(path) if flattened.is_struct_here(kind) else ""
+    if pair:
+        yield pair, path
+    for name, part in kind.parts.items():
+        yield from _pairs(f"{pair}_{name}" if pair else path, part)
 
 
 def _types(decl):

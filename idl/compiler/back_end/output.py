@@ -20,6 +20,11 @@ from . import (
 VERSION = 9  # SKEIN_IDL_VERSION of the headers that the output is for
 
 
+_OWN_HEADERS = [
+    f'"skein/{name}.hpp"'
+    for name in ("call", "detail/argument", "detail/declared_exception", "detail/lendable", "detail/operation", "detail/plain_layout",
+                 "detail/service_reference", "detail/union_access", "detail/version", "stream")
+]  # fmt: skip
 _TYPES = (model.Struct, model.Union, model.Enum, model.Bitmask, model.Bitset)
 
 
@@ -36,16 +41,12 @@ def _travelling(file):
             yield from _operation_structs(item)
 
 
-def _uses(file, searched):
-    """Whether any type of the file is made of one of that kind."""
-
-    def within(kind):
-        if isinstance(kind, searched):
-            return True
-        return (isinstance(kind, model.Map) and within(kind.key)) or ((inner := model.within(kind)) is not None and within(inner))
-
+def _includes(file, general):
+    """Those of all outputs, and those of the templates that the file uses."""
     structs = [struct for interface in file.interfaces for struct in _operation_structs(interface)]
-    return any(within(kind) for decl in [*file.items, *structs] for kind in analysis.parts(decl))
+    kinds = [each for decl in [*file.items, *structs] for kind in analysis.parts(decl) for each in kind.walk()]
+    of_templates = {each.header for each in kinds if each.header.startswith(general[0][0])}
+    return [f"#include {header}" for header in sorted({*general, *of_templates})]
 
 
 def header(file):
@@ -54,29 +55,9 @@ def header(file):
         f"// Generated from {name} by the IDL compiler of Skein. Do not edit.",
         "#pragma once",
         "",
-        "#include <array>",
-        "#include <cstdint>",
-        "#include <iosfwd>",
-        *(["#include <map>"] if _uses(file, model.Map) else []),
-        "#include <memory>",
-        *(["#include <optional>"] if _uses(file, model.Optional) else []),
-        "#include <string>",
-        "#include <string_view>",
-        "#include <utility>",
-        "#include <variant>",
-        "#include <vector>",
+        *_includes(file, ["<array>", "<cstdint>", "<iosfwd>", "<memory>", "<string>", "<string_view>", "<utility>", "<variant>", "<vector>"]),
         "",
-        '#include "skein/call.hpp"',
-        '#include "skein/detail/argument.hpp"',
-        *(['#include "skein/detail/box.hpp"'] if _uses(file, model.External) else []),
-        '#include "skein/detail/declared_exception.hpp"',
-        '#include "skein/detail/lendable.hpp"',
-        '#include "skein/detail/operation.hpp"',
-        '#include "skein/detail/plain_layout.hpp"',
-        '#include "skein/detail/service_reference.hpp"',
-        '#include "skein/detail/union_access.hpp"',
-        '#include "skein/detail/version.hpp"',
-        '#include "skein/stream.hpp"',
+        *_includes(file, _OWN_HEADERS),
         *(f'#include "{include}.hpp"' for include in file.includes),
         "",
         f"static_assert(SKEIN_IDL_VERSION == {VERSION},",

@@ -7,6 +7,7 @@ import sys
 
 import lark
 
+import model
 from report import native, suggestion
 
 _GRAMMAR = os.path.join(os.path.dirname(os.path.abspath(__file__)), "grammar.lark")
@@ -16,7 +17,7 @@ KEYWORDS = frozenset(
     """any boolean case char const default double enum FALSE float long module native octet sequence short string struct switch TRUE typedef
     union unsigned void wchar wstring""".split()
 )
-_TEMPLATES = ["sequence", "string", "wstring", "map", "bitfield"]
+_TEMPLATES = [*model.TEMPLATES, "bitfield"]
 _NAMES = {"IDENTIFIER": "a name", "INTEGER": "a number", "STRING": "text", "SEMICOLON": "';'", "LBRACE": "'{'", "RBRACE": "'}'",
           "LPAR": "'('", "RPAR": "')'", "LESSTHAN": "'<'", "MORETHAN": "'>'", "COMMA": "','", "COLON": "':'", "EQUAL": "'='",
           "LSQB": "'['", "RSQB": "']'", "__COLON_0": "'::'", "$END": "the end of the file"}  # fmt: skip

@@ -137,14 +137,12 @@ class Structures:
 
     def _complete(self, where, kind, apart):
         """The type of a member; of what is not defined yet only where it may lie apart. None, with an error, where it may not."""
-        inner = model.unaliased(kind)
-        while isinstance(inner, model.Array):
-            inner = model.unaliased(inner.element)
-        if not isinstance(inner, model.Named) or inner.decl not in self._forwards:
+        later = next((decl for decl in model.contained(kind) if decl in self._forwards), None)
+        if later is None:
             return kind
         if apart:
             return model.External(kind)
-        return self._error(where, f"{inner.decl.idl_name} is not defined yet: make the member @external or @optional, or use a sequence of it")
+        return self._error(where, f"{later.idl_name} is not defined yet: make the member @external or @optional, or use a sequence of it")
 
     def _finish(self, name, decl, supported):
         if supported:

@@ -51,28 +51,21 @@ class Types:
             return model.Primitive(_PRIMITIVES[tree.data])
         if tree.data in _REFUSED:
             return self._unusable(tree, _REFUSED[tree.data], scopes.Cause(self._place(tree), _REFUSED[tree.data]))
-        if tree.data == "string":
-            return model.String(self._bound(tree.children[0]))
-        if tree.data == "wstring":
-            return model.WideString(self._bound(tree.children[0]))
-        if tree.data == "map":
-            return self._map(*tree.children)
-        if tree.data == "sequence":
-            element, bound = tree.children
-            self._read_annotations("element", element.children[0])
-            built = self._type(element.children[1])
-            return built and model.Sequence(built, self._bound(bound))
+        if tree.data in model.TEMPLATES:
+            return self._template(model.TEMPLATES[tree.data], tree.children)
         return self._declared(tree, self._symbol(tree))
 
-    def _map(self, key, value, bound):
-        for each in (key, value):
+    def _template(self, template, given):
+        """`given` are its types, then its bounds."""
+        elements = [each for each in given if _is(each, "element")]
+        for each in elements:
             self._read_annotations("element", each.children[0])
-        built = self._type(key.children[1]), self._type(value.children[1])
+        built = [self._type(each.children[1]) for each in elements]
         if None in built:
             return None
-        if not _may_be_key(built[0]):
-            return self._error(key, "the key of a map is a number, a character, text, a boolean or an enumeration")
-        return model.Map(*built, self._bound(bound))
+        if template is model.Map and not _may_be_key(built[0]):
+            return self._error(elements[0], "the key of a map is a number, a character, text, a boolean or an enumeration")
+        return template(*built, *(self._bound(each) for each in given[len(elements) :]))
 
     def _bound(self, tree):
         return constants.size(tree, self._resolve_size) if tree is not None else 0
