@@ -60,7 +60,7 @@ std::string type_word(const types::Type& type) {
     case types::Kind::Reference:
       return "reference to " + type.name;
     default:
-      return "number";
+      return type.elements.empty() ? "number" : "object";
   }
 }
 

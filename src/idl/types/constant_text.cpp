@@ -97,12 +97,8 @@ void write(JsonWriter& writer, const DynamicType& type, const std::string& const
       return write_json(writer, unquoted(constant, true, '"'));
     case Kind::LongDouble:
       return write_json(writer, number<long double>(constant, constant));
-    case Kind::Sequence:
-    case Kind::Array:
-    case Kind::Map:
-    case Kind::Reference:
-      refuse(constant);
     default:
+      if (type.kind > Kind::LongDouble) refuse(constant);
       return with_primitive(type.kind, [&](auto zero) {
         if constexpr (!std::is_same_v<decltype(zero), bool> &&
                       !std::is_same_v<decltype(zero), char>) {

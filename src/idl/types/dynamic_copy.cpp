@@ -65,6 +65,7 @@ class Copier {
       case Kind::Declared:
         return declared(type);
       default:
+        if (!type.elements.empty()) return each_element(type, place);
         with_primitive(type.kind,
                        [&](auto zero) { writer_.write(reader_.read<decltype(zero)>()); });
     }
@@ -134,10 +135,11 @@ class Copier {
     const std::size_t length = reader_.read_length(1);
     if (type.bound > 0) reader_.check_bound(length, type.bound, place.c_str());
     writer_.write_length(length);
-    for (std::size_t i = 0; i < length; ++i) {
-      value(*type.elements[0], place);
-      value(*type.elements[1], place);
-    }
+    for (std::size_t i = 0; i < length; ++i) each_element(type, place);
+  }
+
+  void each_element(const DynamicType& type, const std::string& place) {
+    for (const DynamicType* element : type.elements) value(*element, place);
   }
 
   void declared(const DynamicType& type) {

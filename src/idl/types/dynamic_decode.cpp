@@ -6,6 +6,7 @@
 #include "skein/detail/codec.hpp"
 #include "skein/detail/json_codec.hpp"
 #include "skein/detail/service_reference.hpp"
+#include "template_kinds.hpp"
 
 namespace skein::idl {
 namespace {
@@ -77,6 +78,9 @@ class Decoder {
       case Kind::Declared:
         return declared(type);
       default:
+        if (!type.elements.empty()) {
+          return object(type, [&](const DynamicType& each) { value(each, place); });
+        }
         with_primitive(type.kind, [&](auto zero) { json_.write(reader_.read<decltype(zero)>()); });
     }
   }
@@ -106,6 +110,9 @@ class Decoder {
       case Kind::Declared:
         return initial_declared(type);
       default:
+        if (!type.elements.empty()) {
+          return object(type, [&](const DynamicType& each) { initial(each); });
+        }
         with_primitive(type.kind, [&](auto zero) { json_.write(zero); });
     }
   }
@@ -352,14 +359,19 @@ class Decoder {
     json_.begin_array();
     for (std::size_t i = 0; i < length; ++i) {
       reader_.take_memory(kNode);
-      json_.begin_object();
-      json_.key("key");
-      value(*type.elements[0], place);
-      json_.key("value");
-      value(*type.elements[1], place);
-      json_.end_object();
+      object(type, [&](const DynamicType& each) { value(each, place); });
     }
     json_.end_array();
+  }
+
+  /// Of the types that a template takes, each written by `write`.
+  void object(const DynamicType& type, const auto& write) {
+    json_.begin_object();
+    for (std::size_t i = 0; i < type.elements.size(); ++i) {
+      json_.key(template_of(type.kind).names[i]);
+      write(*type.elements[i]);
+    }
+    json_.end_object();
   }
 
   CdrReader& reader_;

@@ -8,6 +8,7 @@
 #include "skein/detail/json_codec.hpp"
 #include "skein/detail/key_hash.hpp"
 #include "skein/detail/service_reference.hpp"
+#include "template_kinds.hpp"
 
 namespace skein::idl {
 namespace {
@@ -62,6 +63,7 @@ class Encoder {
       case Kind::Declared:
         return declared(type, json);
       default:
+        if (!type.elements.empty()) return object(type, json, place);
         with_primitive(type.kind, [&](auto zero) { writer_.write(json.read<decltype(zero)>()); });
     }
   }
@@ -216,17 +218,31 @@ class Encoder {
   }
 
   void map(const DynamicType& type, const JsonReader& json, const std::string& place) {
-    static constexpr std::string_view kMembers[] = {"key", "value"};
     const std::size_t size = json.array_size();
     if (type.bound > 0) json.check_bound(size, type.bound, place.c_str());
-    for (std::size_t i = 0; i < size; ++i)
-      json.element(i).expect_members("a pair of a map", kMembers);
+    for (std::size_t i = 0; i < size; ++i) expect_object(type, json.element(i));
     const CdrWriter::Delimiter delimiter(writer_, writer_.is_xcdr2());
     writer_.write_length(size);
     for (const std::size_t i : in_order_of_keys(*type.elements[0], json, size)) {
-      value(*type.elements[0], json.element(i).member("key"), place);
-      value(*type.elements[1], json.element(i).member("value"), place);
+      members_of_object(type, json.element(i), place);
     }
+  }
+
+  static void expect_object(const DynamicType& type, const JsonReader& json) {
+    const TemplateKind& kind = template_of(type.kind);
+    json.expect_members(kind.object, std::span(kind.names).first(kind.types));
+  }
+
+  void members_of_object(const DynamicType& type, const JsonReader& json,
+                         const std::string& place) {
+    for (std::size_t i = 0; i < type.elements.size(); ++i) {
+      value(*type.elements[i], json.member(template_of(type.kind).names[i]), place);
+    }
+  }
+
+  void object(const DynamicType& type, const JsonReader& json, const std::string& place) {
+    expect_object(type, json);
+    members_of_object(type, json, place);
   }
 
   template <class Key>

@@ -8,6 +8,7 @@
 #include "description_limits.hpp"
 #include "primitive_kind.hpp"
 #include "skein/error.hpp"
+#include "template_kinds.hpp"
 
 namespace skein::idl {
 namespace {
@@ -23,19 +24,6 @@ using types::Kind;
 
 void demand(bool holds, const std::string& what, const char* why) {
   if (!holds) refuse(what, why);
-}
-
-std::size_t elements_of(Kind kind) {
-  switch (kind) {
-    case Kind::Sequence:
-    case Kind::Array:
-    case Kind::OptionalMember:
-      return 1;
-    case Kind::Map:
-      return 2;
-    default:
-      return 0;
-  }
 }
 
 bool is_numbered(const Declaration& declaration) {
@@ -107,7 +95,9 @@ bool leads_to(const DynamicType& start, const Next& next, const Holds& holds) {
 /// Whether a value of the type always contains one of `goal`.
 bool contains(const DynamicType& type, const DynamicType& goal) {
   const auto always = [](const DynamicType& each, std::vector<const DynamicType*>& parts) {
-    if (each.kind == Kind::Array) parts.push_back(each.elements[0]);
+    if (template_of(each.kind).holds_all) {
+      parts.insert(parts.end(), each.elements.begin(), each.elements.end());
+    }
     if (each.kind != Kind::Declared) return;
     const bool one = each.is(DeclarationKind::Union);
     for (const DynamicType::Member& member : each.members) {
@@ -187,6 +177,7 @@ std::int64_t DynamicType::label_of(const Member& member) const {
 
 bool DynamicType::is_object() const {
   if (kind == Kind::OptionalMember) return elements[0]->is_object();
+  if (elements.size() > 1) return kind != Kind::Map;
   return kind == Kind::Reference || (kind == Kind::Declared && !is(DeclarationKind::Enumeration) &&
                                      !is(DeclarationKind::Bitmask));
 }
@@ -240,8 +231,8 @@ const DynamicType* DynamicTypes::resolve(const types::Type& type) {
     if (found == declared_.end()) refuse(type.name, "it is named, but not declared");
     return found->second;
   }
-  demand(type.elements.size() == elements_of(type.kind), std::string(types::to_string(type.kind)),
-         "it lacks what its kind has");
+  demand(type.elements.size() == template_of(type.kind).types,
+         std::string(types::to_string(type.kind)), "it lacks what its kind has");
   demand(type.kind != Kind::Array || type.bound > 0, "array", "an array of nothing");
   DynamicType resolved;
   resolved.kind = type.kind;

@@ -5,24 +5,25 @@
 #include <cctype>
 
 #include "skein/error.hpp"
+#include "template_kinds.hpp"
 
 namespace skein::idl {
 namespace {
 
-// OMG IDL 4.2, 7.2.4; collisions are found without regard to case.
+// OMG IDL 4.2, 7.2.4, but for templates; collisions are found without regard to case.
 constexpr auto kKeywords = std::to_array<std::string_view>(
-    {"abstract",   "alias",     "any",        "attribute",   "bitfield",  "bitmask", "bitset",
-     "boolean",    "case",      "char",       "component",   "connector", "const",   "consumes",
-     "context",    "custom",    "default",    "double",      "emits",     "enum",    "eventtype",
-     "exception",  "factory",   "false",      "finder",      "fixed",     "float",   "getraises",
-     "home",       "import",    "in",         "inout",       "int16",     "int32",   "int64",
-     "int8",       "interface", "local",      "long",        "manages",   "map",     "mirrorport",
-     "module",     "multiple",  "native",     "object",      "octet",     "oneway",  "out",
-     "port",       "porttype",  "primarykey", "private",     "provides",  "public",  "publishes",
-     "raises",     "readonly",  "sequence",   "setraises",   "short",     "string",  "struct",
-     "supports",   "switch",    "true",       "truncatable", "typedef",   "typeid",  "typename",
-     "typeprefix", "uint16",    "uint32",     "uint64",      "uint8",     "union",   "unsigned",
-     "uses",       "valuebase", "valuetype",  "void",        "wchar",     "wstring"});
+    {"abstract",    "alias",      "any",     "attribute", "bitfield",   "bitmask",    "bitset",
+     "boolean",     "case",       "char",    "component", "connector",  "const",      "consumes",
+     "context",     "custom",     "default", "double",    "emits",      "enum",       "eventtype",
+     "exception",   "factory",    "false",   "finder",    "fixed",      "float",      "getraises",
+     "home",        "import",     "in",      "inout",     "int16",      "int32",      "int64",
+     "int8",        "interface",  "local",   "long",      "manages",    "mirrorport", "module",
+     "multiple",    "native",     "object",  "octet",     "oneway",     "out",        "port",
+     "porttype",    "primarykey", "private", "provides",  "public",     "publishes",  "raises",
+     "readonly",    "setraises",  "short",   "struct",    "supports",   "switch",     "true",
+     "truncatable", "typedef",    "typeid",  "typename",  "typeprefix", "uint16",     "uint32",
+     "uint64",      "uint8",      "union",   "unsigned",  "uses",       "valuebase",  "valuetype",
+     "void",        "wchar"});
 static_assert(std::ranges::is_sorted(kKeywords));
 
 constexpr std::string_view kSeparator = "::";
@@ -62,7 +63,9 @@ std::string escaped(std::string_view part) {
   }
   std::string lower(part);
   for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return (std::ranges::binary_search(kKeywords, lower) ? "_" : "") + std::string(part);
+  const bool is_keyword = std::ranges::binary_search(kKeywords, lower) ||
+                          std::ranges::count(kTemplateKinds, lower, &TemplateKind::keyword) > 0;
+  return (is_keyword ? "_" : "") + std::string(part);
 }
 
 std::string escaped_parts(std::string_view name) {

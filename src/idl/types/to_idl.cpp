@@ -11,6 +11,7 @@
 #include "scoped_name.hpp"
 #include "skein/describe.hpp"
 #include "skein/error.hpp"
+#include "template_kinds.hpp"
 #include "type_words.hpp"
 
 namespace skein {
@@ -71,10 +72,6 @@ void check_constant(const std::string& constant) {
 
 const Type& array_element(const Type& type) {
   return type.kind == Kind::Array ? array_element(type.elements.at(0)) : type;
-}
-
-std::string bounded(const std::string& what, std::uint32_t bound) {
-  return bound == 0 ? what : what + "<" + std::to_string(bound) + ">";
 }
 
 /// Writes a type system. A *unit* is what stands directly in a module: a type, or an interface,
@@ -459,17 +456,10 @@ class Writer {
   }
 
   std::string type_text(const Type& type) {
-    const std::string bound = type.bound == 0 ? "" : ", " + std::to_string(type.bound);
+    if (!idl::template_of(type.kind).keyword.empty()) {
+      return idl::template_text(type, [this](const Type& each) { return type_text(each); });
+    }
     switch (type.kind) {
-      case Kind::String:
-        return bounded("string", type.bound);
-      case Kind::WideString:
-        return bounded("wstring", type.bound);
-      case Kind::Sequence:
-        return "sequence<" + type_text(type.elements.at(0)) + bound + ">";
-      case Kind::Map:
-        return "map<" + type_text(type.elements.at(0)) + ", " + type_text(type.elements.at(1)) +
-               bound + ">";
       case Kind::Array:
         return array_name(type);
       case Kind::Declared:

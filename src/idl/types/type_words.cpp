@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "idl/types/template_kinds.hpp"
+
 namespace skein::idl {
 namespace {
 
@@ -29,22 +31,13 @@ std::string with_article(const std::string& what) {
 }
 
 std::string spelled(const Type& type) {
-  const auto inner = [&](std::size_t i) { return spelled(type.elements.at(i)); };
-  const std::string bound = type.bound == 0 ? "" : std::to_string(type.bound);
-  const std::string further = bound.empty() ? "" : ", " + bound;
+  if (!template_of(type.kind).keyword.empty()) return template_text(type, spelled);
   switch (type.kind) {
-    case Kind::String:
-    case Kind::WideString:
-      return std::string(type.kind == Kind::String ? "string" : "wstring") +
-             (bound.empty() ? "" : "<" + bound + ">");
-    case Kind::Sequence:
-      return "sequence<" + inner(0) + further + ">";
-    case Kind::Map:
-      return "map<" + inner(0) + ", " + inner(1) + further + ">";
     case Kind::Array:
-      return inner(0) + "[" + bound + "]";
+      return spelled(type.elements.at(0)) + "[" +
+             (type.bound == 0 ? "" : std::to_string(type.bound)) + "]";
     case Kind::OptionalMember:
-      return "optional " + inner(0);
+      return "optional " + spelled(type.elements.at(0));
     case Kind::Declared:
       return type.name;
     case Kind::Reference:

@@ -8,6 +8,7 @@
 #include "core/printable.hpp"
 #include "idl/types/dynamic_type.hpp"
 #include "idl/types/scoped_name.hpp"
+#include "idl/types/template_kinds.hpp"
 #include "recording/viewers/viewer_names.hpp"
 #include "skein/error.hpp"
 
@@ -325,22 +326,29 @@ class IdlWriter {
         spelling.sizes = sizes;
         return spelling;
       }
-      case Kind::Map: {
-        const DynamicType& key = *type.elements[0];
-        const DynamicType& value = *type.elements[1];
-        const std::string pair =
-            plain_struct("Pair", [&] { return members(key, "key") + members(value, "value"); });
-        return {.type = "sequence<" + pair + bound_of(type.bound, ", ", "") + ">",
+      case Kind::Map:
+        return {.type = "sequence<" + pair(type) + bound_of(type.bound, ", ", "") + ">",
                 .is_collection = true,
                 .is_delimited = is_xcdr2()};
-      }
       case Kind::OptionalMember:
         throw InvalidArgument("something is optional that is no member");
       case Kind::Declared:
         return declared(type);
       default:
-        return {.type = primitive(type.kind)};
+        return {.type = type.elements.empty() ? primitive(type.kind) : pair(type)};
     }
+  }
+
+  /// One of each type that a template takes.
+  std::string pair(const DynamicType& type) {
+    const auto& names = idl::template_of(type.kind).names;
+    return plain_struct("Pair", [&] {
+      std::string text;
+      for (std::size_t i = 0; i < type.elements.size(); ++i) {
+        text += members(*type.elements[i], std::string(names.at(i)));
+      }
+      return text;
+    });
   }
 
   Spelling collection_of(const DynamicType& element) {
