@@ -40,7 +40,7 @@ class MissionReader {
     mission.where = root.where();
     mission.name = root.attribute("name").value;
     mission.domain = domain_of(root);
-    mission.logs = value_or(root, "logs", "");
+    if (root.maybe_attribute("logs")) mission.logs = root.attribute("logs").value;
     mission.dictionary = dictionary_of(root, mission.files);
     for (const auto& child : root.children("peer")) mission.peers.push_back(peer_of(child));
     if (mission.peers.empty()) findings_.error(root.where(), "the mission has no <peer>");

@@ -343,6 +343,20 @@ TEST_CASE("A domain outside of what DDS has is refused") {
   CHECK_THAT(to_text(check_file(folder.path() / "m.xml")), Catch::Contains("is no DDS domain"));
 }
 
+TEST_CASE("Logs go into a folder that has a name") {
+  ProfileFolder folder;
+  const auto file = folder.path() / "m.xml";
+  const auto write = [&](const std::string& logs) {
+    folder.write("m.xml", "<mission name=\"m\" logs=\"" + logs +
+                              "\"><peer name=\"f\" component=\"f.xml\"/></mission>");
+  };
+  write("here");
+  CHECK(read_mission_profile(file).logs == "here");
+  write("");
+  CHECK_THAT(to_text(check_file(file)),
+             Catch::Contains("m.xml:1:19: error: <mission> has an empty logs"));
+}
+
 TEST_CASE("A component that cannot be read is reported where it is named, and why") {
   ProfileFolder folder;
   folder.write("bad.xml", "<component name=\"B\">");
