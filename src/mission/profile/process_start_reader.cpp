@@ -14,6 +14,10 @@ namespace {
 
 constexpr const char* kCpus = "process_cpus";
 
+/// What the launcher obeys, like kProcessAttributes; skein peer obeys the rest.
+constexpr std::array<std::string_view, 6> kOfPrograms{"system",  "host",  "component",
+                                                      "program", "ready", kCpus};
+
 /// A path is relative to the file in which it stands.
 std::string read_program(const XmlElement& element) {
   if (!element.maybe_attribute("program")) return {};
@@ -103,16 +107,15 @@ void refuse_peer_options(const XmlElement& element) {
     element.findings().error(where, what + " has no effect on a program of one's own",
                              "remove it, or hand it over as an <argument> or <environment>");
   };
-  const auto refuse_all = [&](const auto& names) {
-    for (const std::string_view name : names) {
-      const auto attribute = element.maybe_attribute(name);
-      if (attribute && !attribute->inherited) refuse(attribute->where, std::string(name));
+  const Names& of_processes = attribute_group(kProcessAttributes);
+  for (const std::string_view name : attribute_group(kGroupDefaults)) {
+    const auto attribute = element.maybe_attribute(name);
+    if (!attribute || attribute->inherited || std::ranges::count(of_processes, name) != 0 ||
+        std::ranges::count(kOfPrograms, name) != 0) {
+      continue;
     }
-  };
-  refuse_all(std::array{"plugin", "shared_memory", "shared_memory_calls", "vendor", "peers",
-                        "multicast", "interface", "allowed_sources", "threads"});
-  refuse_all(attribute_group(kThreadAttributes));
-  refuse_all(attribute_group(kHeadAttributes));
+    refuse(attribute->where, std::string(name));
+  }
   for (const char* name : {"csp", "parameter", "topic"}) {
     for (const auto& child : element.children(name)) {
       refuse(child.where(), "<" + std::string(name) + ">");
