@@ -1,8 +1,6 @@
 #pragma once
 
-#include <chrono>
-#include <cstdint>
-#include <optional>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -11,30 +9,14 @@
 
 namespace skein::profile {
 
-/// What a profile says of a topic's QoS, in place of what the code says. Unset: as the code says.
+/// What a profile says of a topic's QoS, in place of what the code says.
 struct TopicRules {
-  /// Unset: `none`, or `all`.
-  template <class T>
-  struct Limit {
-    std::optional<T> value{};
-
-    bool operator==(const Limit&) const = default;
-  };
-  using Depth = Limit<std::uint32_t>;
-  using Period = Limit<std::chrono::milliseconds>;
-
   std::string name;
   /// Stands at an element around the peer, for peers that may not all have the topic.
   bool inherited = false;
-  std::optional<bool> reliable{};
-  std::optional<bool> transient_local{};
-  std::optional<bool> exclusive{};
-  std::optional<std::int32_t> strength{};
-  std::optional<Depth> history_depth{};
-  std::optional<Period> deadline{};
-  std::optional<Period> lifespan{};
-  std::optional<Period> liveliness_lease{};
   SourcePosition where{};
+  /// In their order.
+  std::vector<std::function<void(TopicQos&)>> changes{};
 
   void change(TopicQos& qos) const;
 };

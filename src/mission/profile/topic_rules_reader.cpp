@@ -14,6 +14,9 @@ namespace {
 
 using std::chrono::milliseconds;
 
+using Period = std::optional<milliseconds>;  // unset: `none`
+using Depth = std::optional<std::uint32_t>;  // unset: `all`
+
 constexpr const char* kNone = "none";
 constexpr std::chrono::hours kLongest{24 * 365};
 
@@ -38,10 +41,10 @@ std::optional<Number> read_bound(const XmlElement& topic, const XmlAttribute& te
   return std::nullopt;
 }
 
-std::optional<TopicRules::Period> read_period(const XmlElement& topic, const char* name) {
+std::optional<Period> read_period(const XmlElement& topic, const char* name) {
   const auto text = topic.maybe_attribute(name);
   if (!text) return std::nullopt;
-  if (text->value == kNone) return TopicRules::Period();
+  if (text->value == kNone) return Period();
   const auto refuse = [&](const std::string& what) {
     topic.findings().error(
         text->where, what,
@@ -53,20 +56,32 @@ std::optional<TopicRules::Period> read_period(const XmlElement& topic, const cha
     if (time < milliseconds(1) || time > kLongest || time % milliseconds(1) != time.zero()) {
       return refuse(std::string(name) + " is " + in_quotes(text->value));
     }
-    return TopicRules::Period{std::chrono::duration_cast<milliseconds>(time)};
+    return Period(std::chrono::duration_cast<milliseconds>(time));
   } catch (const InvalidArgument& error) {
     return refuse(std::string(name) + ": " + error.what());
   }
 }
 
-std::optional<TopicRules::Depth> read_history(const XmlElement& topic) {
+std::optional<Depth> read_history(const XmlElement& topic) {
   const auto text = topic.maybe_attribute("history");
   if (!text) return std::nullopt;
-  if (text->value == "all") return TopicRules::Depth();
+  if (text->value == "all") return Depth();
   const auto depth = read_bound<std::uint32_t>(
       topic, *text, 1, "write how many values of each key are kept, or \"all\"");
   if (!depth) return std::nullopt;
-  return TopicRules::Depth{*depth};
+  return Depth(*depth);
+}
+
+std::optional<std::int32_t> read_strength(const XmlElement& topic, std::optional<bool> exclusive) {
+  const auto text = topic.maybe_attribute("strength");
+  if (!text) return std::nullopt;
+  const auto strength =
+      read_bound<std::int32_t>(topic, *text, 0, "write a number: 0, or more for stronger");
+  if (exclusive == false && strength.value_or(0) > 0) {
+    topic.findings().error(text->where, "a strength means nothing with shared ownership",
+                           "write ownership=\"exclusive\", or leave strength out");
+  }
+  return strength;
 }
 
 void demand_topic_name(const XmlAttribute& name, FindingList& findings) {
@@ -88,22 +103,23 @@ TopicRules read_rules(const XmlElement& topic) {
   rules.name = name.value;
   rules.where = name.where;
   rules.inherited = name.inherited;
-  rules.reliable = read_word(topic, "reliability", "best-effort", "reliable");
-  rules.transient_local = read_word(topic, "durability", "volatile", "transient-local");
-  rules.history_depth = read_history(topic);
-  rules.deadline = read_period(topic, "deadline");
-  rules.lifespan = read_period(topic, "lifespan");
-  rules.liveliness_lease = read_period(topic, "lease");
-  rules.exclusive = read_word(topic, "ownership", "shared", "exclusive");
-  const auto strength = topic.maybe_attribute("strength");
-  if (strength) {
-    rules.strength =
-        read_bound<std::int32_t>(topic, *strength, 0, "write a number: 0, or more for stronger");
-  }
-  if (strength && rules.exclusive == false && rules.strength.value_or(0) > 0) {
-    topic.findings().error(strength->where, "a strength means nothing with shared ownership",
-                           "write ownership=\"exclusive\", or leave strength out");
-  }
+  // Without a value the member stays as the code says.
+  const auto set = [&](auto member, const auto& value) {
+    if (value) rules.changes.emplace_back([=](TopicQos& qos) { qos.*member = *value; });
+  };
+  set(&TopicQos::reliable, read_word(topic, "reliability", "best-effort", "reliable"));
+  const auto transient_local = read_word(topic, "durability", "volatile", "transient-local");
+  set(&TopicQos::transient_local, transient_local);
+  set(&TopicQos::history_depth, read_history(topic));
+  set(&TopicQos::deadline, read_period(topic, "deadline"));
+  set(&TopicQos::lifespan, read_period(topic, "lifespan"));
+  set(&TopicQos::liveliness_lease, read_period(topic, "lease"));
+  const auto exclusive = read_word(topic, "ownership", "shared", "exclusive");
+  set(&TopicQos::exclusive, exclusive);
+  set(&TopicQos::strength, read_strength(topic, exclusive));
+  if (exclusive == false) set(&TopicQos::strength, std::optional(0));
+  // As in TopicQos::state().
+  if (transient_local == true) set(&TopicQos::max_waiting, std::optional(0U));
   return rules;
 }
 

@@ -4,8 +4,18 @@
 
 using namespace skein::profile;
 using namespace std::chrono_literals;
-using Depth = TopicRules::Depth;
-using Period = TopicRules::Period;
+
+namespace {
+
+/// What the rules for a topic make of a QoS.
+skein::TopicQos changed(const PeerProfile& peer, const char* topic, skein::TopicQos qos = {}) {
+  const auto* rules = find_topic(peer.topics, topic);
+  REQUIRE(rules != nullptr);
+  rules->change(qos);
+  return qos;
+}
+
+}  // namespace
 
 TEST_CASE("A topic may have each QoS, or none of it") {
   ProfileFolder folder;
@@ -14,21 +24,23 @@ TEST_CASE("A topic may have each QoS, or none of it") {
        deadline="100 ms" lifespan="2 s" lease="1 min" ownership="exclusive" strength="3"/>
 <topic name="c" history="all" deadline="none" ownership="shared"/></peer>)"));
   REQUIRE(mission.peers.at(0).topics.size() == 2);
-  const TopicRules& all = *find_topic(mission.peers[0].topics, "a/b");
-  CHECK(all.reliable == false);
-  CHECK(all.transient_local == true);
-  CHECK(all.history_depth == Depth{4});
-  CHECK(all.deadline == Period{100ms});
-  CHECK(all.lifespan == Period{2s});
-  CHECK(all.liveliness_lease == Period{1min});
-  CHECK(all.exclusive == true);
+  const auto all = changed(mission.peers[0], "a/b");
+  CHECK_FALSE(all.reliable);
+  CHECK(all.transient_local);
+  CHECK(all.max_waiting == 0);
+  CHECK(all.history_depth == 4U);
+  CHECK(all.deadline == 100ms);
+  CHECK(all.lifespan == 2s);
+  CHECK(all.liveliness_lease == 1min);
+  CHECK(all.exclusive);
   CHECK(all.strength == 3);
-  const TopicRules& some = *find_topic(mission.peers[0].topics, "c");
-  CHECK(some.history_depth == Depth());
-  CHECK(some.deadline == Period());
-  CHECK(some.exclusive == false);
+  const auto some = changed(mission.peers[0], "c", all);
+  CHECK_FALSE(some.history_depth);
+  CHECK_FALSE(some.deadline);
+  CHECK_FALSE(some.exclusive);
+  CHECK(some.strength == 0);
   CHECK_FALSE(some.reliable);
-  CHECK_FALSE(some.lifespan);
+  CHECK(some.lifespan == 2s);
   CHECK(find_topic(mission.peers[0].topics, "a") == nullptr);
 }
 
@@ -40,12 +52,12 @@ TEST_CASE("A peer has the topics that it does not name from its group, then from
 <peer name="f" count="2"><topic name="c" history="${instance}0"/></peer></group>)"));
   REQUIRE(mission.peers.size() == 2);
   const auto depth = [&](const char* name) {
-    return find_topic(mission.peers[1].topics, name)->history_depth;
+    return changed(mission.peers[1], name).history_depth;
   };
-  CHECK(depth("a") == Depth{1});
-  CHECK(depth("b") == Depth{2});
-  CHECK(depth("c") == Depth{20});
-  CHECK_FALSE(find_topic(mission.peers[1].topics, "c")->lifespan);
+  CHECK(depth("a") == 1U);
+  CHECK(depth("b") == 2U);
+  CHECK(depth("c") == 20U);
+  CHECK_FALSE(changed(mission.peers[1], "c").lifespan);
   for (const TopicRules& rules : mission.peers[1].topics) {
     CAPTURE(rules.name);
     CHECK(rules.inherited == (rules.name != "c"));
