@@ -20,12 +20,12 @@ void cyclonedds_neighbour(const RawOptions& options) {
   dds_listener_t* listener = dds_create_listener(&census);
   dds_lset_data_available(listener, read_announcements);
   const auto topic = participant.topic(kAnnouncementTopic);
-  participant.writer(participant.topic(kCallsTopic), Delivery::BestEffort);
   participant.reader(topic, Delivery::LatestOfTheLiving, listener);
   participant.reader(participant.topic(kLoadTopic), Delivery::Latest);
-  participant.writer(participant.topic(kStatisticsTopic), Delivery::BestEffort);
-  participant.writer(participant.topic(kDecisionsTopic), Delivery::BestEffort);
-  participant.writer(participant.topic(kCallRecordsTopic));
+  for_each_introspection_topic([&](const std::string& name, bool reliable) {
+    const auto told = participant.topic(name.c_str());
+    reliable ? participant.writer(told) : participant.writer(told, Delivery::BestEffort);
+  });
   participant.writer(participant.topic(kAnswersTopic));
   participant.reader(participant.topic(kQuestionsTopic));
   participant.reader(participant.topic(kRequestTopic));

@@ -25,12 +25,12 @@ class AnnouncementListener final : public dds::DataReaderListener {
 void fastdds_neighbour(const RawOptions& options) {
   static AnnouncementListener listener;  // Fast DDS's threads end with the process
   FastddsParticipant participant(options.domain, Way::Plain, options.peers);
-  participant.writer(kCallsTopic, Delivery::BestEffort);
   participant.reader(kAnnouncementTopic, Delivery::LatestOfTheLiving, &listener);
   participant.reader(kLoadTopic, Delivery::Latest);
-  participant.writer(kStatisticsTopic, Delivery::BestEffort);
-  participant.writer(kDecisionsTopic, Delivery::BestEffort);
-  participant.writer(kCallRecordsTopic);
+  for_each_introspection_topic([&](const std::string& name, bool reliable) {
+    reliable ? participant.writer(name.c_str())
+             : participant.writer(name.c_str(), Delivery::BestEffort);
+  });
   participant.writer(kAnswersTopic);
   participant.reader(kQuestionsTopic);
   participant.reader(kRequestTopic);

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 
 #include "harness/census.hpp"
 #include "raw/main.hpp"
 #include "raw/message.hpp"
+#include "rpc/service/introspection_topic.hpp"
 
 /// A raw peer with the endpoints of a Skein entity that provides one service: it announces itself
 /// on a topic that all read, and is ready once it has read all others' announcements.
@@ -15,12 +17,16 @@ inline constexpr std::size_t kAnnouncementBytes = 400;
 
 inline constexpr const char* kAnnouncementTopic = "benchmark_raw_Announcement";
 inline constexpr const char* kLoadTopic = "benchmark_raw_Load";
-inline constexpr const char* kStatisticsTopic = "benchmark_raw_Statistics";
-inline constexpr const char* kDecisionsTopic = "benchmark_raw_Decisions";
-inline constexpr const char* kCallsTopic = "benchmark_raw_Calls";
-inline constexpr const char* kCallRecordsTopic = "benchmark_raw_CallRecords";
 inline constexpr const char* kQuestionsTopic = "benchmark_raw_Questions";
 inline constexpr const char* kAnswersTopic = "benchmark_raw_Answers";
+
+/// Calls `make` with the name and the reliability of each topic on which an entity tells of itself.
+template <class Make>
+void for_each_introspection_topic(const Make& make) {
+  introspection::for_each_topic([&](const introspection::AnyTopic& topic) {
+    make("benchmark_raw_" + std::string(topic.name), topic.reliable);
+  });
+}
 
 /// By the announcements.
 using Heard = Census<ClientId>;

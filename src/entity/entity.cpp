@@ -56,9 +56,6 @@ constexpr std::chrono::milliseconds kStopPatience{2000};
 // In less the endpoints for a question are hardly made and matched.
 constexpr std::chrono::milliseconds kLeastToAsk{100};
 
-constexpr std::chrono::milliseconds kStatisticsInterval{1000};
-constexpr std::chrono::milliseconds kLogInterval{200};
-
 // A provider in another language decodes by its description of the types, and so gets all in the
 // message.
 bool reads_in_place(const InterfaceInfo& interface) {
@@ -288,8 +285,7 @@ struct Entity::State {
                               static_cast<std::uint32_t>(::getpid())};
   // These go first: they ask all that stands above.
   Broker::Registration namesake_watch;
-  std::optional<introspection::PeriodicTopic<introspection::ServiceStatistics>> statistics_topic;
-  std::optional<introspection::PeriodicTopic<introspection::LogLine>> log_topic;
+  std::vector<std::shared_ptr<void>> periodic_topics;
   std::optional<introspection::Answerer> answerer;
 
   /// What makes no progress, in words; empty where everything does.
@@ -396,11 +392,14 @@ Entity::Entity(EntityOptions options) : state_(std::make_unique<State>(std::move
         const std::string text = state.namesakes.look_at(change);
         if (!text.empty()) log(LogLevel::Warning, id, text);
       });
-  state.statistics_topic.emplace(*state.participant, state.process->clock(), state.control,
-                                 introspection::kStatistics, kStatisticsInterval,
-                                 [&state](bool) { return state.statistics(); });
-  state.log_topic.emplace(*state.participant, state.process->clock(), state.control,
-                          introspection::kLog, kLogInterval, introspection::LogReport(id()));
+  const auto tell = [&state]<class T>(const introspection::Topic<T>& topic,
+                                      typename introspection::PeriodicTopic<T>::Source source) {
+    state.periodic_topics.push_back(std::make_shared<introspection::PeriodicTopic<T>>(
+        *state.participant, state.process->clock(), state.control, topic, std::move(source)));
+  };
+  tell(introspection::kTopic<introspection::ServiceStatistics>,
+       [&state](bool) { return state.statistics(); });
+  tell(introspection::kTopic<introspection::LogLine>, introspection::LogReport(id()));
   state.answerer.emplace(
       *state.participant, state.control, id(),
       [&state](const inspection::Question& question, inspection::Answer& answer) {

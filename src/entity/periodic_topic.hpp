@@ -11,7 +11,7 @@
 
 namespace skein::introspection {
 
-/// Tells, on one of the topics about an entity, what a source has at each interval: best effort,
+/// Tells, on one of the topics about an entity, what a source has at each of its intervals,
 /// and only while somebody reads.
 template <class T>
 class PeriodicTopic {
@@ -21,9 +21,9 @@ class PeriodicTopic {
 
   /// `participant`, `clock` and `control`, on which `source` is asked, outlive the topic.
   PeriodicTopic(dds::Participant& participant, Clock& clock, Executor& control,
-                const Topic<T>& topic, std::chrono::milliseconds interval, Source source)
+                const Topic<T>& topic, Source source)
       : clock_(clock),
-        interval_(interval),
+        interval_(topic.interval),
         source_(std::move(source)),
         publisher_(participant, control, topic) {
     publisher_.when_read([this] { begin(); });

@@ -13,7 +13,7 @@ namespace skein::introspection {
 
 struct StatisticsReader::State {
   explicit State(dds::Participant& participant)
-      : reader(participant, kStatistics,
+      : reader(participant, kTopic<ServiceStatistics>,
                {[this](const dds::Sample& sample) { on_sample(sample); },
                 [this](const Guid& writer) { on_writer_gone(writer); }}) {}
 

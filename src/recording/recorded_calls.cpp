@@ -73,7 +73,7 @@ RecordedCalls::RecordedCalls(Writer& writer, RecordedTypes& types, const Recordi
       ask_(std::move(ask)),
       most_waiting_(most_waiting) {
   const std::string type = "skein::introspection::CallRecord";
-  records_ = types_.add_channel(introspection::kCallRecords.name, type,
+  records_ = types_.add_channel(introspection::kTopic<CallRecords>.name, type,
                                 skein::describe(idl::type_support<CallRecord>()),
                                 {{"type", type}, {"introspection", "true"}});
 }

@@ -93,11 +93,12 @@ struct Recorder::State {
         calls(writer, types, time, [this](const std::string& service, const Guid& participant) {
           return inspector.types(service, participant, std::chrono::seconds(2));
         }) {
-    if (options.decisions) record_own(introspection::kDecisions);
-    if (!options.calls) return;
-    record_own(introspection::kCalls);
+    if (!options.introspection) return;
+    introspection::for_each_topic([this](const auto& topic) {
+      if (topic.recorded) record_own(topic);
+    });
     call_reader = std::make_unique<introspection::AnyReader>(
-        EntityAccess::participant(entity), introspection::kCallRecords,
+        EntityAccess::participant(entity), introspection::kTopic<introspection::CallRecords>,
         introspection::AnyReader::Listener{
             [this](const dds::Sample& sample) { calls.receive(sample); }});
   }

@@ -26,7 +26,7 @@ namespace {
 class Heard {
  public:
   explicit Heard(dds::Participant& participant)
-      : reader_(participant, introspection::kCalls, [this](const CallEvents& batch) {
+      : reader_(participant, introspection::kTopic<CallEvents>, [this](const CallEvents& batch) {
           std::lock_guard lock(mutex_);
           events_.insert(events_.end(), batch.values.begin(), batch.values.end());
           dropped_ = std::max(dropped_, batch.dropped);

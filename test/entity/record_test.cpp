@@ -270,7 +270,8 @@ TEST_CASE("who reads the topic of decisions gets each as it is made", "[wire]") 
   std::mutex mutex;
   std::vector<Decision> seen;
   introspection::Reader<Decision> reader(EntityAccess::participant(*onlooker),
-                                         introspection::kDecisions, [&](const Decision& decision) {
+                                         introspection::kTopic<Decision>,
+                                         [&](const Decision& decision) {
                                            const std::lock_guard lock(mutex);
                                            seen.push_back(decision);
                                          });

@@ -42,10 +42,12 @@ struct World {
   std::unique_ptr<dds::Participant> far = network.vendor()->create_participant({});
   std::uint32_t asked = 0;
   int begun = 0;  // how often a reader was told to be the first
-  std::optional<PeriodicTopic<ServiceStatistics>> topic{
-      std::in_place, *near, clock, control, introspection::kStatistics, 1000ms, [this](bool anew) {
-        return tell(anew);
-      }};
+  std::optional<PeriodicTopic<ServiceStatistics>> topic{std::in_place,
+                                                        *near,
+                                                        clock,
+                                                        control,
+                                                        introspection::kTopic<ServiceStatistics>,
+                                                        [this](bool anew) { return tell(anew); }};
   std::optional<StatisticsReader> reader;
 };
 

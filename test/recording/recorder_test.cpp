@@ -12,6 +12,7 @@
 #include "recording/recorded_calls.hpp"
 #include "recording/recorded_topic.hpp"
 #include "recording/recorded_types.hpp"
+#include "rpc/service/introspection_topic.hpp"
 #include "skein/describe.hpp"
 #include "skein/detail/codec.hpp"
 #include "skein/dynamic.hpp"
@@ -446,10 +447,22 @@ TEST_CASE("nothing of calls is copied while nobody records") {
   Recorded recorded;
   auto proxy = recorded.provider->connect<survey::ISurveyor>();
   CHECK(proxy.greet("you") == "Hello, you");
-  recorded.begin({.calls = false, .decisions = false});
+  recorded.begin({.introspection = false});
   CHECK(recorded.recorder->look(1s).empty());
   recorded.recorder->close();
   CHECK(recording::Reader(recorded.file).channels().empty());
+}
+
+TEST_CASE("each of Skein's own topics that is to be recorded has a channel") {
+  Recorded recorded;
+  recorded.begin();
+  const auto channels = recorded.recorder->statistics().channels;
+  introspection::for_each_topic([&](const introspection::AnyTopic& topic) {
+    CAPTURE(topic.name);
+    const auto count =
+        std::ranges::count(channels, topic.name, &recording::ChannelStatistics::topic);
+    if (topic.recorded) CHECK(count == 1);
+  });
 }
 
 TEST_CASE("a replay publishes the recorded values again, in their order") {

@@ -4,6 +4,7 @@
 #include <future>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "rpc/service/call_recorder.hpp"
 #include "skein/clock.hpp"
 #include "skein/detail/codec.hpp"
+#include "skein/detail/type_support.hpp"
 #include "skein/introspection.idl.hpp"
 #include "skein/loopback.hpp"
 #include "test/tools/log.hpp"
@@ -20,13 +22,14 @@ using namespace std::chrono_literals;
 using introspection::CallRecord;
 using introspection::CallRecords;
 using introspection::Decision;
-using introspection::kCallRecords;
-using introspection::kDecisions;
-using introspection::kStatistics;
 using introspection::ServiceStatistics;
 using skein::test::Log;
 
 namespace {
+
+constexpr const auto& kCallRecords = introspection::kTopic<CallRecords>;
+constexpr const auto& kDecisions = introspection::kTopic<Decision>;
+constexpr const auto& kStatistics = introspection::kTopic<ServiceStatistics>;
 
 /// Two peers on a network on which everything happens inside the call that causes it.
 struct World {
@@ -71,6 +74,23 @@ ServiceStatistics statistics(std::uint8_t provider) {
 }
 
 }  // namespace
+
+TEST_CASE_METHOD(World,
+                 "each topic is named for its type, and carries its values to who reads it") {
+  std::set<std::string> names;
+  introspection::for_each_topic([&]<class T>(const introspection::Topic<T>& topic) {
+    CAPTURE(topic.name);
+    CHECK(names.insert(topic.name).second);
+    CHECK_THAT(topic.name, Catch::StartsWith("skein/"));
+    CHECK(topic.type_name == idl::type_support<T>().name);
+    CHECK(topic.keyed == requires(const T& value) { key_hash(value); });
+    introspection::Publisher<T> publisher(*near, control, topic);
+    const Onlooker<T> onlooker(*far, topic);
+    publisher.publish(T{});
+    control.run_all();
+    CHECK(onlooker.values == std::vector{T{}});
+  });
+}
 
 TEST_CASE_METHOD(World, "a publisher writes only while somebody reads") {
   introspection::Publisher<Decision> publisher(*near, control, kDecisions);
@@ -254,13 +274,13 @@ TEST_CASE_METHOD(World, "what is told of each call is gathered, and written as o
   publisher.publish(record(2));
   publisher.publish(record(3));
   CHECK(control.run_all() == 0);
-  clock.advance(publisher.kGatherTime);
+  clock.advance(kCallRecords.interval);
   CHECK(control.run_all() == 1);
   REQUIRE(onlooker.values.size() == 1);
   CHECK(onlooker.values[0].values == std::vector{record(2), record(3)});
   CHECK(onlooker.values[0].dropped == 0);
   publisher.publish(record(4));
-  clock.advance(publisher.kGatherTime);
+  clock.advance(kCallRecords.interval);
   CHECK(control.run_all() == 1);
   REQUIRE(onlooker.values.size() == 2);
   CHECK(onlooker.values[1].values == std::vector{record(4)});
@@ -274,7 +294,7 @@ TEST_CASE_METHOD(World, "large values are written in several samples, in their o
                            record(4, 10 * third), record(5), record(6)}) {
     publisher.publish(each);
   }
-  clock.advance(publisher.kGatherTime);
+  clock.advance(kCallRecords.interval);
   control.run_all();
   std::vector<std::vector<std::uint64_t>> numbers;
   for (const CallRecords& batch : onlooker.values) {
@@ -290,7 +310,7 @@ TEST_CASE_METHOD(
   Onlooker<CallRecords> onlooker(*far, kCallRecords);
   for (int i = 0; i < 5; ++i) publisher.publish(record(1, publisher.kMostWaiting / 3));
   publisher.publish(record(2));
-  clock.advance(publisher.kGatherTime);
+  clock.advance(kCallRecords.interval);
   control.run_all();
   REQUIRE(onlooker.values.size() == 3);
   CHECK(onlooker.values.back().values == std::vector{record(2)});
@@ -303,7 +323,7 @@ TEST_CASE_METHOD(World,
   Onlooker<CallRecords> onlooker(*far, kCallRecords);
   publisher.publish(record(1, publisher.kMostWaiting + 1));
   publisher.publish(record(2, publisher.kMostWaiting + 1));
-  clock.advance(publisher.kGatherTime);
+  clock.advance(kCallRecords.interval);
   control.run_all();
   REQUIRE(onlooker.values.size() == 1);
   CHECK(onlooker.values[0].values.at(0).number == 1);

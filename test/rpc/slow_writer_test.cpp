@@ -265,8 +265,9 @@ TEST_CASE("a journal that ends waits for who is inside its writer") {
   SlowParticipant participant(*vendor);
   ThreadExecutor control("control");
   rpc::CallJournal journal(participant, clock, control, "uav-1/test");
-  introspection::Reader<introspection::CallEvents> reader(participant, introspection::kCalls,
-                                                          [](const introspection::CallEvents&) {});
+  introspection::Reader<introspection::CallEvents> reader(
+      participant, introspection::kTopic<introspection::CallEvents>,
+      [](const introspection::CallEvents&) {});
   REQUIRE(eventually([&] { return journal.on(); }));
   participant.valve.set(Valve::Mode::Holding);
   journal.note(introspection::CallStep::Sent, Guid::random(), 1, "test::Echo",

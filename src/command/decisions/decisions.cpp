@@ -49,7 +49,7 @@ void watch(const DecisionsArguments& arguments) {
   const Interruption interruption;
   Entity entity = join(arguments, "decisions");
   introspection::Reader<introspection::Decision> reader(
-      EntityAccess::participant(entity), introspection::kDecisions,
+      EntityAccess::participant(entity), introspection::kTopic<introspection::Decision>,
       [&arguments](const introspection::Decision& record) {
         if (!is_wanted(record, arguments)) return;
         arguments.json ? print_decision_json(record) : print_decision(record);
@@ -142,7 +142,7 @@ void for_each_in_log(const std::string& log, const Visit& visit) {
 void for_each_in_recording(const std::string& file, const Visit& visit) {
   const recording::Reader reader(file);
   recording::Selection selection;
-  selection.topics = {introspection::kDecisions.name};
+  selection.topics = {introspection::kTopic<introspection::Decision>.name};
   auto messages = reader.messages(selection);
   std::size_t count = 0;
   while (const auto message = messages.next()) {

@@ -178,9 +178,9 @@ DomainWatch::DomainWatch(Entity& entity, std::uint32_t domain, std::optional<Pla
       look_(entity, std::move(gives_up)),
       launchers_(domain),
       statistics_(EntityAccess::participant(entity)),
-      decisions_(EntityAccess::participant(entity), introspection::kDecisions,
+      decisions_(EntityAccess::participant(entity), introspection::kTopic<introspection::Decision>,
                  [this](const introspection::Decision& each) { history_.add(each); }),
-      log_(EntityAccess::participant(entity), introspection::kLog,
+      log_(EntityAccess::participant(entity), introspection::kTopic<introspection::LogLine>,
            [this](const introspection::LogLine& each) { history_.add(each); }) {}
 
 DomainState DomainWatch::look() {

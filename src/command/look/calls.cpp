@@ -85,7 +85,7 @@ int show_calls(const CallsArguments& arguments) {
   Entity entity = join(arguments, "calls");
   Narration narration(arguments.entity, arguments.json);
   introspection::Reader<introspection::CallEvents> reader(
-      EntityAccess::participant(entity), introspection::kCalls,
+      EntityAccess::participant(entity), introspection::kTopic<introspection::CallEvents>,
       [&](const introspection::CallEvents& batch) { narration.tell(batch); });
   tell_waiting(arguments, "the next call");
   interruption.wait(arguments.seconds);

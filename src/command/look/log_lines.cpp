@@ -110,7 +110,7 @@ int show_log(const LogArguments& arguments) {
   Entity entity = join(arguments, "log");
   LogPrinter printer(arguments);
   introspection::Reader<introspection::LogLine> reader(
-      EntityAccess::participant(entity), introspection::kLog,
+      EntityAccess::participant(entity), introspection::kTopic<introspection::LogLine>,
       [&](const introspection::LogLine& line) { printer.show(line); });
   tell_waiting(arguments, "the next line of a log");
   const bool for_ever = arguments.seconds == 0;

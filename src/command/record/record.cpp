@@ -37,7 +37,7 @@ recording::RecorderOptions options_of(const RecordArguments& arguments,
                                       const Interruption& interruption) {
   recording::RecorderOptions options;
   options.topics = arguments.topics;
-  options.calls = options.decisions = !arguments.only_topics;
+  options.introspection = !arguments.only_topics;
   options.writer.split_size = arguments.split_megabytes * 1'000'000;
   options.gives_up = interruption.gives_up();
   return options;

@@ -36,7 +36,8 @@ class Watch {
         tools_(tools),
         look_(entity, interruption.gives_up()),
         statistics_(EntityAccess::participant(entity)),
-        decisions_(EntityAccess::participant(entity), introspection::kDecisions,
+        decisions_(EntityAccess::participant(entity),
+                   introspection::kTopic<introspection::Decision>,
                    [this](const introspection::Decision& decision) { add(decision); }) {}
 
   /// Waits for peers that do not answer, a second.

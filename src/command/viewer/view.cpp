@@ -45,9 +45,9 @@ int serve_view(const ViewArguments& arguments) {
   view::Server server(server_options(arguments));
   ServiceFeed services(server, entity, inspector);
   TopicFeed topics(server, EntityAccess::participant(entity), inspector);
-  topics.show(introspection::kCalls);
-  topics.show(introspection::kDecisions);
-  topics.show(introspection::kStatistics);
+  introspection::for_each_topic([&](const auto& topic) {
+    if (topic.viewed) topics.show(topic);
+  });
   std::printf(
       "Open this in Lichtblick or Foxglove, as a connection of the kind 'Foxglove WebSocket'. "
       "Whoever knows it may look.\n%s\n",

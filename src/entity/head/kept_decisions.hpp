@@ -20,7 +20,8 @@ class KeptDecisions {
   /// `log`: as HeadOptions::log.
   KeptDecisions(const Head::Parts& parts, const std::string& log)
       : log_(parts.entity, log),
-        publisher_(parts.participant, parts.control, introspection::kDecisions) {}
+        publisher_(parts.participant, parts.control,
+                   introspection::kTopic<introspection::Decision>) {}
 
   /// Numbers the decision, keeps it and publishes it. `wanted` gets a copy unless it is null.
   void add(introspection::Decision&& decision, introspection::Decision* wanted) {

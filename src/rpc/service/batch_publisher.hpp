@@ -24,8 +24,6 @@ class BatchPublisher : public AnyPublisher {
   using Values = decltype(Batch::values);
   using Value = typename Values::value_type;
 
-  /// How long a value waits for others.
-  static constexpr std::chrono::milliseconds kGatherTime{25};
   /// What may wait, in bytes of memory, and what a sample holds: where one value is larger, that
   /// alone.
   static constexpr std::size_t kMostWaiting = std::size_t{64} << 20;
@@ -34,7 +32,7 @@ class BatchPublisher : public AnyPublisher {
   /// All live until close().
   BatchPublisher(dds::Participant& participant, Clock& clock, Executor& control,
                  const Topic<Batch>& topic)
-      : AnyPublisher(participant, control, topic), clock_(clock) {}
+      : AnyPublisher(participant, control, topic), clock_(clock), interval_(topic.interval) {}
   /// As close().
   ~BatchPublisher() { close(); }
 
@@ -51,7 +49,7 @@ class BatchPublisher : public AnyPublisher {
     waiting_size_ += size;
     waiting_.push_back(std::move(value));
     if (std::exchange(gathering_, true)) return;
-    timer_ = clock_.call_after(kGatherTime, [this] { post([this] { write_waiting(); }); });
+    timer_ = clock_.call_after(interval_, [this] { post([this] { write_waiting(); }); });
   }
 
   /// Writes what waits, and what AnyPublisher::close() says.
@@ -106,6 +104,7 @@ class BatchPublisher : public AnyPublisher {
   }
 
   Clock& clock_;
+  const std::chrono::milliseconds interval_;  // a value waits for others
   std::mutex mutex_;
   Values waiting_;
   std::size_t waiting_size_ = 0;

@@ -45,7 +45,8 @@ bool declared(const std::exception_ptr& error) {
 
 CallJournal::CallJournal(dds::Participant& participant, Clock& clock, Executor& control,
                          std::string entity)
-    : entity_(std::move(entity)), publisher_(participant, clock, control, introspection::kCalls) {}
+    : entity_(std::move(entity)),
+      publisher_(participant, clock, control, introspection::kTopic<introspection::CallEvents>) {}
 
 void CallJournal::note_end(bool at_server, const Guid& client, std::uint64_t number,
                            std::string_view service, const OperationInfo& operation,

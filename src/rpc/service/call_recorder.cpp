@@ -63,7 +63,7 @@ class CallRecorder::Tap::Items final : public StreamWriter {
 CallRecorder::CallRecorder(dds::Participant& participant, Clock& clock, Executor& control,
                            std::string entity)
     : entity_(std::move(entity)),
-      publisher_(participant, clock, control, introspection::kCallRecords) {}
+      publisher_(participant, clock, control, introspection::kTopic<introspection::CallRecords>) {}
 
 CallRecorder::Tap::Tap(CallRecorder* recorder, const InterfaceInfo& interface,
                        const OperationInfo& operation, const wire::RequestId& id, const void* in)

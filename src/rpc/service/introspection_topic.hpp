@@ -1,11 +1,13 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -20,19 +22,16 @@
 /// an entity writes only while somebody does.
 namespace skein::introspection {
 
-struct CallEvents;
-struct CallRecords;
-struct Decision;
-struct LogLine;
-struct ServiceStatistics;
-
 /// One of these topics, without its type. The texts are literals.
 struct AnyTopic {
   const char* name;
   const char* type_name;
-  bool keyed;
-  std::uint32_t history_depth;
-  bool reliable = false;
+  bool keyed = false;
+  std::uint32_t history_depth;           ///< Of each key.
+  bool reliable = false;                 ///< Otherwise best effort; all are volatile.
+  std::chrono::milliseconds interval{};  ///< Between two samples of an entity; 0: as it happens.
+  bool recorded = false;                 ///< By a Recorder, as it travels.
+  bool viewed = false;                   ///< By `skein view`.
 
   dds::Topic dds_topic() const { return {name, type_name, keyed}; }
   dds::Qos qos() const;
@@ -41,16 +40,48 @@ struct AnyTopic {
 template <class T>
 struct Topic : AnyTopic {};
 
-inline constexpr Topic<CallEvents> kCalls{
-    {"skein/calls", "skein::introspection::CallEvents", false, 64}};
-inline constexpr Topic<CallRecords> kCallRecords{
-    {"skein/call_records", "skein::introspection::CallRecords", false, 256, true}};
-inline constexpr Topic<Decision> kDecisions{
-    {"skein/decisions", "skein::introspection::Decision", false, 64}};
-inline constexpr Topic<LogLine> kLog{
-    {"skein/log", "skein::introspection::LogLine", false, 256, true}};
-inline constexpr Topic<ServiceStatistics> kStatistics{
-    {"skein/statistics", "skein::introspection::ServiceStatistics", true, 1}};
+/// What each entity tells of itself; the types are those of introspection.idl. Who records, views
+/// or imitates entities goes by this table.
+inline constexpr std::tuple kTopics{
+    Topic<struct CallEvents>{{.name = "skein/calls",
+                              .type_name = "skein::introspection::CallEvents",
+                              .history_depth = 64,
+                              .interval = std::chrono::milliseconds(25),
+                              .recorded = true,
+                              .viewed = true}},
+    // A Recorder takes them apart, see RecordedCalls.
+    Topic<struct CallRecords>{{.name = "skein/call_records",
+                               .type_name = "skein::introspection::CallRecords",
+                               .history_depth = 256,
+                               .reliable = true,
+                               .interval = std::chrono::milliseconds(25)}},
+    Topic<struct Decision>{{.name = "skein/decisions",
+                            .type_name = "skein::introspection::Decision",
+                            .history_depth = 64,
+                            .recorded = true,
+                            .viewed = true}},
+    Topic<struct LogLine>{{.name = "skein/log",
+                           .type_name = "skein::introspection::LogLine",
+                           .history_depth = 256,
+                           .reliable = true,
+                           .interval = std::chrono::milliseconds(200)}},
+    Topic<struct ServiceStatistics>{{.name = "skein/statistics",
+                                     .type_name = "skein::introspection::ServiceStatistics",
+                                     .keyed = true,
+                                     .history_depth = 1,
+                                     .interval = std::chrono::milliseconds(1000),
+                                     .viewed = true}},
+};
+
+/// The one that carries values of that type.
+template <class T>
+inline constexpr const Topic<T>& kTopic = std::get<Topic<T>>(kTopics);
+
+/// Calls `visit` with each.
+template <class Visit>
+void for_each_topic(const Visit& visit) {
+  std::apply([&](const auto&... topic) { (visit(topic), ...); }, kTopics);
+}
 
 /// A Publisher or BatchPublisher without its type.
 class AnyPublisher {
