@@ -76,4 +76,21 @@ int CommandRun::wait(std::chrono::seconds limit) {
   return exit_code_;
 }
 
+std::vector<std::string> commands_with(const std::string& option) {
+  std::vector<std::string> found;
+  CommandRun all({"complete", "--", ""});
+  all.wait();
+  std::istringstream lines(all.output());
+  for (std::string line; std::getline(lines, line);) {
+    const std::string name = line.substr(0, line.find('\t'));
+    CommandRun help({name, "--help"});
+    help.wait();
+    const std::string text = help.output();
+    if (text.find("Usage: skein " + name + " [OPTIONS]\n") != std::string::npos &&
+        text.find("\n  " + option + " ") != std::string::npos)
+      found.push_back(name);
+  }
+  return found;
+}
+
 }  // namespace skein::test

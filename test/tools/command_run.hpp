@@ -46,4 +46,7 @@ class CommandRun {
   int exit_code_ = -1;
 };
 
+/// The commands of `skein` that have this option and take no argument, as their help says.
+std::vector<std::string> commands_with(const std::string& option);
+
 }  // namespace skein::test

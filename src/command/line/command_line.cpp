@@ -54,17 +54,15 @@ void make_command_line(CLI::App& app, int& result) {
   app.set_help_flag("-h,--help", "Print this help and exit");
   app.require_subcommand(1);
   app.set_version_flag("--version", SKEIN_VERSION, "Print the version and exit");
-  // Subcommands take the group from their parent.
-  app.group("Missions");
-  add_mission_commands(app, result);
-  app.group("Looking at a domain");
-  add_inspection_commands(app, result);
-  add_topic_commands(app, result);
-  add_recording_commands(app, result);
-  app.group("Measuring");
-  add_measuring_commands(app, result);
-  app.group("For the shell");
-  add_shell_commands(app, result);
+  const auto add = [&](const char* group, const Subcommands& commands) {
+    app.group(group);  // which subcommands take from their parent
+    for (const AddCommand each : commands) each(app, result);
+  };
+  add("Missions", mission_commands);
+  for (const Subcommands* commands : {&inspection_commands, &topic_commands, &recording_commands})
+    add("Looking at a domain", *commands);
+  add("Measuring", measuring_commands);
+  add("For the shell", shell_commands);
   app.footer(exit_codes_text() + "\n" +
              examples_text({{"skein check mission.xml && skein launch mission.xml",
                              "Fly a mission if nothing is missing"},

@@ -17,13 +17,22 @@ namespace skein::command {
 /// `result`, which must outlive `app`.
 void make_command_line(CLI::App& app, int& result);
 
-/// The subcommands by group, each group in its own file.
-void add_mission_commands(CLI::App& app, int& result);
-void add_inspection_commands(CLI::App& app, int& result);
-void add_topic_commands(CLI::App& app, int& result);
-void add_recording_commands(CLI::App& app, int& result);
-void add_measuring_commands(CLI::App& app, int& result);
-void add_shell_commands(CLI::App& app, int& result);
+/// What adds a subcommand, with its help, to `app`.
+using AddCommand = void (*)(CLI::App& app, int& result);
+
+/// The subcommands of a file, in the order in which help lists them.
+using Subcommands = std::vector<AddCommand>;
+extern Subcommands mission_commands;
+extern Subcommands inspection_commands;
+extern Subcommands topic_commands;
+extern Subcommands recording_commands;
+extern Subcommands measuring_commands;
+extern Subcommands shell_commands;
+
+/// Stands behind the function that adds a subcommand, in its file, and makes it one of these.
+struct Row {
+  Row(Subcommands& all, AddCommand add) { all.push_back(add); }
+};
 
 /// A command line as a user would type it, and what it does.
 struct Example {

@@ -3,6 +3,9 @@
 
 // What looks at a domain while it runs, or at what was recorded of it.
 namespace skein::command {
+
+Subcommands inspection_commands;
+
 namespace {
 
 void add_watching(CLI::App& command, double& seconds) {
@@ -27,28 +30,7 @@ void add_calls(CLI::App& app, int& result) {
   add_json(command, arguments.json, "each step a line");
   add_exit_codes(command);
 }
-
-void add_log(CLI::App& app, int& result) {
-  auto& command = add_command(
-      app, "log",
-      "Show what the entities of a domain log, live\n\n"
-      "First come the latest lines that each process has logged before, at most 256. What a "
-      "process logs at all, it decides itself: see SKEIN_LOG in the guide.",
-      {{"skein log --domain 47", "All lines, until Ctrl-C"},
-       {"skein log --entity navigator --level warning", "Warnings and errors of one process"}});
-  auto& arguments = arguments_of(command, show_log, result);
-  add_onlooker(command, arguments);
-  add_entity(command, arguments.entity, "Lines of this entity's process:");
-  command
-      .add_option("--level", arguments.level,
-                  "The least that is shown: debug, info, warning, error")
-      ->check(CLI::IsMember({"debug", "info", "warning", "error"}).description(""))
-      ->type_name("LEVEL")
-      ->capture_default_str();
-  add_watching(command, arguments.seconds);
-  add_json(command, arguments.json, "each line a line");
-  add_exit_codes(command);
-}
+const Row kCallsRow(inspection_commands, add_calls);
 
 void add_decisions(CLI::App& app, int& result) {
   auto& command = add_command(
@@ -83,80 +65,7 @@ void add_decisions(CLI::App& app, int& result) {
       ->needs(replays);
   add_exit_codes(command);
 }
-
-void add_graph(CLI::App& app, int& result) {
-  auto& command = add_command(
-      app, "graph", "Draw who speaks to whom on a domain now",
-      {{"skein graph --domain 47 --format svg > mission.svg", "A picture, by Graphviz"},
-       {"skein graph --domain 47 --format mermaid", "Text for a README or an issue"},
-       {"skein graph --profile mission.xml --format json", "Nodes and edges, for programs"}});
-  auto& arguments = arguments_of(command, draw_graph, result);
-  add_onlooker(command, arguments);
-  const std::vector<std::string> formats{"dot", "mermaid", "json", "svg", "png"};
-  auto* format = command
-                     .add_option("--format", arguments.format,
-                                 "The notation; svg and png need the package graphviz")
-                     ->type_name(one_of(formats))
-                     ->check(known_word(formats))
-                     ->capture_default_str();
-  command.add_flag("--tools", arguments.tools, "Show Skein's own commands, too");
-  add_wait(command, arguments.seconds);
-  add_json(command, arguments.json, "as --format json")->excludes(format);
-  add_exit_codes(command);
-}
-
-void add_peers(CLI::App& app, int& result) {
-  auto& command =
-      add_command(app, "peers", "List who is on a domain now",
-                  {{"skein peers --domain 47", "Each peer with its process and its services"},
-                   {"skein peers --profile mission.xml --json", "The same, for programs"}});
-  auto& arguments = arguments_of(command, list_peers, result);
-  add_onlooker(command, arguments);
-  add_wait(command, arguments.seconds);
-  add_json(command, arguments.json, "a list");
-  add_exit_codes(command);
-}
-
-void add_services(CLI::App& app, int& result) {
-  auto& command = add_command(
-      app, "services", "List what is provided on a domain now",
-      {{"skein services --domain 47", "Who provides what, with which attributes"},
-       {"skein services --domain 47 --statistics",
-        "What became of the calls, their times, and the way that each client takes"},
-       {"skein services --interface eth0 --multicast", "On a network, not within this host"}});
-  auto& arguments = arguments_of(command, list_services, result);
-  add_onlooker(command, arguments);
-  command.add_flag(
-      "--statistics", arguments.statistics,
-      "Show what became of the calls of each service, how long they took, and by which "
-      "transport its clients reach it, with the reason where a faster one is not taken");
-  add_wait(command, arguments.seconds);
-  add_json(command, arguments.json, "a list");
-  add_exit_codes(command);
-}
-
-void add_top(CLI::App& app, int& result) {
-  auto& command = add_command(
-      app, "top",
-      "Watch peers, services and decisions of a domain on a whole screen\n\n"
-      "Shows what each process uses, how often each service is called and how long its slowest "
-      "operation runs (the 50th and 99th percentile since it began), and the latest decisions of "
-      "Heads. Keys: q leaves; arrows, j, k and page keys scroll; tab goes from peers to services; "
-      "n, c, m, r and l sort by name, CPU, memory, calls and p99. Where NO_COLOR is set there is "
-      "no "
-      "colour; on a dumb terminal, and into a pipe, frames follow each other as text.",
-      {{"skein top --domain 47", "Until q or Ctrl-C"},
-       {"skein top --profile mission.xml --once", "One frame as plain text, of all rows"}});
-  auto& arguments = arguments_of(command, show_top, result);
-  add_onlooker(command, arguments);
-  add_duration(command, "--every", arguments.every, "How often it looks again", Zero::Refused)
-      ->default_str(default_duration(arguments.every));
-  auto* once = command.add_flag("--once", arguments.once,
-                                "Print one frame as plain text, after three seconds");
-  add_json(command, arguments.json, "one frame")->needs(once);
-  command.add_flag("--tools", arguments.tools, "Show Skein's own commands, too");
-  add_exit_codes(command);
-}
+const Row kDecisionsRow(inspection_commands, add_decisions);
 
 /// Where a command serves, and the token of its URL.
 void add_server(CLI::App& command, std::uint16_t& port, std::string& token, const char* variable) {
@@ -169,24 +78,6 @@ void add_server(CLI::App& command, std::uint16_t& port, std::string& token, cons
                   "on the command line, but not in the environment; default: a random one")
       ->type_name("TOKEN")
       ->envname(variable);
-}
-
-void add_view(CLI::App& app, int& result) {
-  auto& command =
-      add_command(app, "view", "Show a domain to Lichtblick or Foxglove, live",
-                  {{"skein view --domain 47", "Prints the URL to open there, until Ctrl-C"},
-                   {"skein view --profile mission.xml --port 9000", "A mission, on another port"}});
-  auto& arguments = arguments_of(command, serve_view, result);
-  add_onlooker(command, arguments);
-  add_server(command, arguments.port, arguments.token, "SKEIN_VIEW_TOKEN");
-  command
-      .add_option("--origin", arguments.origins,
-                  "A web page that may look, such as http://localhost:8080; may be given several "
-                  "times; default: all pages that know the token")
-      ->type_name("URL");
-  command.add_flag("--calls", arguments.calls,
-                   "Let those who look also call services: they can then steer the mission");
-  add_exit_codes(command);
 }
 
 void add_designer(CLI::App& app, int& result) {
@@ -253,19 +144,127 @@ void add_designer(CLI::App& app, int& result) {
                    "Open no browser; default: the desktop's, if there is one");
   add_exit_codes(command);
 }
+const Row kDesignerRow(inspection_commands, add_designer);
+
+void add_graph(CLI::App& app, int& result) {
+  auto& command = add_command(
+      app, "graph", "Draw who speaks to whom on a domain now",
+      {{"skein graph --domain 47 --format svg > mission.svg", "A picture, by Graphviz"},
+       {"skein graph --domain 47 --format mermaid", "Text for a README or an issue"},
+       {"skein graph --profile mission.xml --format json", "Nodes and edges, for programs"}});
+  auto& arguments = arguments_of(command, draw_graph, result);
+  add_onlooker(command, arguments);
+  const std::vector<std::string> formats{"dot", "mermaid", "json", "svg", "png"};
+  auto* format = command
+                     .add_option("--format", arguments.format,
+                                 "The notation; svg and png need the package graphviz")
+                     ->type_name(one_of(formats))
+                     ->check(known_word(formats))
+                     ->capture_default_str();
+  command.add_flag("--tools", arguments.tools, "Show Skein's own commands, too");
+  add_wait(command, arguments.seconds);
+  add_json(command, arguments.json, "as --format json")->excludes(format);
+  add_exit_codes(command);
+}
+const Row kGraphRow(inspection_commands, add_graph);
+
+void add_log(CLI::App& app, int& result) {
+  auto& command = add_command(
+      app, "log",
+      "Show what the entities of a domain log, live\n\n"
+      "First come the latest lines that each process has logged before, at most 256. What a "
+      "process logs at all, it decides itself: see SKEIN_LOG in the guide.",
+      {{"skein log --domain 47", "All lines, until Ctrl-C"},
+       {"skein log --entity navigator --level warning", "Warnings and errors of one process"}});
+  auto& arguments = arguments_of(command, show_log, result);
+  add_onlooker(command, arguments);
+  add_entity(command, arguments.entity, "Lines of this entity's process:");
+  command
+      .add_option("--level", arguments.level,
+                  "The least that is shown: debug, info, warning, error")
+      ->check(CLI::IsMember({"debug", "info", "warning", "error"}).description(""))
+      ->type_name("LEVEL")
+      ->capture_default_str();
+  add_watching(command, arguments.seconds);
+  add_json(command, arguments.json, "each line a line");
+  add_exit_codes(command);
+}
+const Row kLogRow(inspection_commands, add_log);
+
+void add_peers(CLI::App& app, int& result) {
+  auto& command =
+      add_command(app, "peers", "List who is on a domain now",
+                  {{"skein peers --domain 47", "Each peer with its process and its services"},
+                   {"skein peers --profile mission.xml --json", "The same, for programs"}});
+  auto& arguments = arguments_of(command, list_peers, result);
+  add_onlooker(command, arguments);
+  add_wait(command, arguments.seconds);
+  add_json(command, arguments.json, "a list");
+  add_exit_codes(command);
+}
+const Row kPeersRow(inspection_commands, add_peers);
+
+void add_services(CLI::App& app, int& result) {
+  auto& command = add_command(
+      app, "services", "List what is provided on a domain now",
+      {{"skein services --domain 47", "Who provides what, with which attributes"},
+       {"skein services --domain 47 --statistics",
+        "What became of the calls, their times, and the way that each client takes"},
+       {"skein services --interface eth0 --multicast", "On a network, not within this host"}});
+  auto& arguments = arguments_of(command, list_services, result);
+  add_onlooker(command, arguments);
+  command.add_flag(
+      "--statistics", arguments.statistics,
+      "Show what became of the calls of each service, how long they took, and by which "
+      "transport its clients reach it, with the reason where a faster one is not taken");
+  add_wait(command, arguments.seconds);
+  add_json(command, arguments.json, "a list");
+  add_exit_codes(command);
+}
+const Row kServicesRow(inspection_commands, add_services);
+
+void add_top(CLI::App& app, int& result) {
+  auto& command = add_command(
+      app, "top",
+      "Watch peers, services and decisions of a domain on a whole screen\n\n"
+      "Shows what each process uses, how often each service is called and how long its slowest "
+      "operation runs (the 50th and 99th percentile since it began), and the latest decisions of "
+      "Heads. Keys: q leaves; arrows, j, k and page keys scroll; tab goes from peers to services; "
+      "n, c, m, r and l sort by name, CPU, memory, calls and p99. Where NO_COLOR is set there is "
+      "no "
+      "colour; on a dumb terminal, and into a pipe, frames follow each other as text.",
+      {{"skein top --domain 47", "Until q or Ctrl-C"},
+       {"skein top --profile mission.xml --once", "One frame as plain text, of all rows"}});
+  auto& arguments = arguments_of(command, show_top, result);
+  add_onlooker(command, arguments);
+  add_duration(command, "--every", arguments.every, "How often it looks again", Zero::Refused)
+      ->default_str(default_duration(arguments.every));
+  auto* once = command.add_flag("--once", arguments.once,
+                                "Print one frame as plain text, after three seconds");
+  add_json(command, arguments.json, "one frame")->needs(once);
+  command.add_flag("--tools", arguments.tools, "Show Skein's own commands, too");
+  add_exit_codes(command);
+}
+const Row kTopRow(inspection_commands, add_top);
+
+void add_view(CLI::App& app, int& result) {
+  auto& command =
+      add_command(app, "view", "Show a domain to Lichtblick or Foxglove, live",
+                  {{"skein view --domain 47", "Prints the URL to open there, until Ctrl-C"},
+                   {"skein view --profile mission.xml --port 9000", "A mission, on another port"}});
+  auto& arguments = arguments_of(command, serve_view, result);
+  add_onlooker(command, arguments);
+  add_server(command, arguments.port, arguments.token, "SKEIN_VIEW_TOKEN");
+  command
+      .add_option("--origin", arguments.origins,
+                  "A web page that may look, such as http://localhost:8080; may be given several "
+                  "times; default: all pages that know the token")
+      ->type_name("URL");
+  command.add_flag("--calls", arguments.calls,
+                   "Let those who look also call services: they can then steer the mission");
+  add_exit_codes(command);
+}
+const Row kViewRow(inspection_commands, add_view);
 
 }  // namespace
-
-void add_inspection_commands(CLI::App& app, int& result) {
-  add_calls(app, result);
-  add_decisions(app, result);
-  add_designer(app, result);
-  add_graph(app, result);
-  add_log(app, result);
-  add_peers(app, result);
-  add_services(app, result);
-  add_top(app, result);
-  add_view(app, result);
-}
-
 }  // namespace skein::command

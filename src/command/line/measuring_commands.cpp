@@ -4,6 +4,9 @@
 
 // What measures calls.
 namespace skein::command {
+
+Subcommands measuring_commands;
+
 namespace {
 
 BenchArguments& add_measurement(CLI::App& command, int (*function)(const BenchArguments&),
@@ -117,9 +120,7 @@ void add_compare(CLI::App& bench, int& result) {
       ->check(existing);
 }
 
-}  // namespace
-
-void add_measuring_commands(CLI::App& app, int& result) {
+void add_bench(CLI::App& app, int& result) {
   auto& bench = add_command(app, "bench", "Measure calls on this machine, or between two hosts",
                             {{"skein bench latency --count 200", "What a call costs here"}});
   bench.require_subcommand(1);
@@ -128,5 +129,7 @@ void add_measuring_commands(CLI::App& app, int& result) {
   add_discovery(bench, result);
   add_compare(bench, result);
 }
+const Row kBenchRow(measuring_commands, add_bench);
 
+}  // namespace
 }  // namespace skein::command

@@ -6,6 +6,9 @@
 
 // What checks missions and flies them.
 namespace skein::command {
+
+Subcommands mission_commands;
+
 namespace {
 
 CLI::Option* add_profile(CLI::App& command, std::string& profile) {
@@ -61,6 +64,7 @@ void add_check(CLI::App& app, int& result) {
   add_host(command, arguments.host);
   add_json(command, arguments.json);
 }
+const Row kCheckRow(mission_commands, add_check);
 
 void add_doctor(CLI::App& app, int& result) {
   auto& command = add_command(
@@ -89,6 +93,7 @@ void add_doctor(CLI::App& app, int& result) {
   add_json(command, arguments.json, "an object with the list `findings`");
   add_exit_codes(command, launch::kDoctor);
 }
+const Row kDoctorRow(mission_commands, add_doctor);
 
 void add_launch(CLI::App& app, int& result) {
   auto& command = add_command(
@@ -128,6 +133,7 @@ void add_launch(CLI::App& app, int& result) {
       ->check(CLI::Validator(CLI::Range(1, 1000)).description(""));
   add_exit_codes(command, launch::kLaunch);
 }
+const Row kLaunchRow(mission_commands, add_launch);
 
 void add_peer(CLI::App& app, int& result) {
   auto& command = add_command(
@@ -143,6 +149,48 @@ void add_peer(CLI::App& app, int& result) {
           "For its components to read; after -- where one begins with a dash; default: none")
       ->type_name("WORD");
 }
+const Row kPeerRow(mission_commands, add_peer);
+
+CLI::Option* add_running(CLI::App& command, RunningArguments& arguments) {
+  CLI::Option* profile = add_profile(command, arguments.profile);
+  add_variables(command, arguments.variables)->needs(profile);
+  add_host(command, arguments.host)->needs(profile);
+  add_exit_codes(command, launch::kAsking);
+  return profile;
+}
+
+void add_restart(CLI::App& app, int& result) {
+  auto& command = add_command(
+      app, "restart", "Start a process of a running mission anew",
+      {{"skein restart mission.xml navigator", "Also if it was given up: restarts count anew"}});
+  auto& arguments = arguments_of(command, restart_process, result);
+  add_running(command, arguments)->required();
+  add_process(command, arguments.process);
+}
+const Row kRestartRow(mission_commands, add_restart);
+
+void add_status(CLI::App& app, int& result) {
+  auto& command =
+      add_command(app, "status", "Show what the launcher of a running mission knows",
+                  {{"skein status", "Of all missions that you fly here"},
+                   {"skein status mission.xml", "State, process, restarts and last end of each"}});
+  auto& arguments = arguments_of(command, show_status, result);
+  add_running(command, arguments)
+      ->description("Mission profile (XML); default: all missions that this user flies here");
+  add_json(command, arguments.json);
+}
+const Row kStatusRow(mission_commands, add_status);
+
+void add_script(CLI::App& app, int& result) {
+  auto& command = add_command(app, "script", "Write a mission as a shell script",
+                              {{"skein script mission.xml --output start.sh",
+                                "A script that starts it without Skein's launcher"}});
+  auto& arguments = arguments_of(command, write_script, result);
+  add_plan(command, arguments);
+  command.add_option("--output", arguments.output, "The script's file; default: standard output")
+      ->type_name(kFile);
+}
+const Row kScriptRow(mission_commands, add_script);
 
 void add_names(CLI::App& command, const std::string& option, std::vector<std::string>& names,
                const std::string& what, const char* type) {
@@ -193,34 +241,7 @@ void add_new(CLI::App& app, int& result) {
                   "The folder in which the component gets its own; default: the present one")
       ->type_name(kDirectory);
 }
-
-CLI::Option* add_running(CLI::App& command, RunningArguments& arguments) {
-  CLI::Option* profile = add_profile(command, arguments.profile);
-  add_variables(command, arguments.variables)->needs(profile);
-  add_host(command, arguments.host)->needs(profile);
-  add_exit_codes(command, launch::kAsking);
-  return profile;
-}
-
-void add_restart(CLI::App& app, int& result) {
-  auto& command = add_command(
-      app, "restart", "Start a process of a running mission anew",
-      {{"skein restart mission.xml navigator", "Also if it was given up: restarts count anew"}});
-  auto& arguments = arguments_of(command, restart_process, result);
-  add_running(command, arguments)->required();
-  add_process(command, arguments.process);
-}
-
-void add_status(CLI::App& app, int& result) {
-  auto& command =
-      add_command(app, "status", "Show what the launcher of a running mission knows",
-                  {{"skein status", "Of all missions that you fly here"},
-                   {"skein status mission.xml", "State, process, restarts and last end of each"}});
-  auto& arguments = arguments_of(command, show_status, result);
-  add_running(command, arguments)
-      ->description("Mission profile (XML); default: all missions that this user flies here");
-  add_json(command, arguments.json);
-}
+const Row kNewRow(mission_commands, add_new);
 
 /// Hidden: `launch --ssh` runs it.
 void add_attend(CLI::App& app, int& result) {
@@ -231,29 +252,7 @@ void add_attend(CLI::App& app, int& result) {
   command.add_flag("--verbose", arguments.verbose,
                    "Show the start, readiness and end of each process");
 }
-
-void add_script(CLI::App& app, int& result) {
-  auto& command = add_command(app, "script", "Write a mission as a shell script",
-                              {{"skein script mission.xml --output start.sh",
-                                "A script that starts it without Skein's launcher"}});
-  auto& arguments = arguments_of(command, write_script, result);
-  add_plan(command, arguments);
-  command.add_option("--output", arguments.output, "The script's file; default: standard output")
-      ->type_name(kFile);
-}
+const Row kAttendRow(mission_commands, add_attend);
 
 }  // namespace
-
-void add_mission_commands(CLI::App& app, int& result) {
-  add_check(app, result);
-  add_doctor(app, result);
-  add_launch(app, result);
-  add_peer(app, result);
-  add_restart(app, result);
-  add_status(app, result);
-  add_script(app, result);
-  add_new(app, result);
-  add_attend(app, result);
-}
-
 }  // namespace skein::command

@@ -3,82 +3,15 @@
 
 // Recordings of missions.
 namespace skein::command {
+
+Subcommands recording_commands;
+
 namespace {
 
 void add_topic_filter(CLI::App& command, std::vector<std::string>& topics, const char* type) {
   command.add_option("--topics", topics, "Topics, with commas between them; default: all")
       ->type_name(type)
       ->delimiter(',');
-}
-
-void add_record(CLI::App& app, int& result) {
-  auto& command = add_command(
-      app, "record",
-      "Record a mission while it flies\n\n"
-      "Topics, calls with their arguments and results, and decisions go into a file in the MCAP "
-      "format, which Lichtblick and Foxglove open. After a crash, what was written until a second "
-      "before can be read. A call that never ran, or at which its provider died, has no arguments "
-      "there, as the provider tells them when it ends.",
-      {{"skein record --domain 42", "All of a mission, until Ctrl-C"},
-       {"skein record --domain 42 --topics pose,track --only-topics --for 60", "Two topics alone"},
-       {"skein record --profile mission.xml --output flight.mcap --split 500",
-        "flight_0.mcap, flight_1.mcap, ..."}});
-  auto& arguments = arguments_of(command, record, result);
-  add_onlooker(command, arguments);
-  command
-      .add_option("--output", arguments.output,
-                  "The file; default: mission_DATE_TIME.mcap, in this folder")
-      ->type_name(kFile);
-  add_topic_filter(command, arguments.topics, kTopic);
-  command.add_flag("--only-topics", arguments.only_topics, "Neither calls nor decisions");
-  add_duration(command, "--for", arguments.seconds, "How long; default: until interrupted",
-               Zero::Refused);
-  command
-      .add_option("--split", arguments.split_megabytes,
-                  "Begin a new file before one is larger than this; default: one file")
-      ->type_name("MEGABYTES")
-      ->check(above_zero());
-  add_json(command, arguments.json, "what was recorded");
-  add_exit_codes(command);
-}
-
-void add_replay(CLI::App& app, int& result) {
-  auto& command = add_command(
-      app, "replay",
-      "Publish the topics of a recording again, or make its decisions again\n\n"
-      "Where it is interrupted before all is published, it says how much was, and its exit code is "
-      "128 + N for signal N.",
-      {{"skein replay flight.mcap --domain 43", "In the recorded order and pace"},
-       {"skein replay flight.mcap --rate 10 --topics pose --domain 43", "One topic, faster"},
-       {"skein replay flight.mcap --decisions", "Exit code 1 where one comes out differently"}});
-  auto& arguments = arguments_of(command, replay_recording, result);
-  command.add_option("FILE", arguments.file, "A recording")->type_name(kFile)->required();
-  add_onlooker(command, arguments);
-  add_topic_filter(command, arguments.topics, "NAMES");  // those of FILE, not of a domain
-  command.add_option("--rate", arguments.rate, "So many times as fast as it was recorded")
-      ->check(above_zero())
-      ->type_name("NUMBER")
-      ->capture_default_str();
-  auto* decisions = command.add_flag("--decisions", arguments.decisions,
-                                     "Make the choices of the Heads again, bit for bit");
-  command
-      .add_option("--plugin", arguments.plugins,
-                  "A plugin whose selection strategies were used; may be given several times; "
-                  "default: Skein's own strategies alone")
-      ->type_name("NAME")
-      ->needs(decisions);
-  add_json(command, arguments.json,
-           "what was published; with --decisions a line for each that differs, and the counts");
-  add_exit_codes(command);
-}
-
-void add_info(CLI::App& app, int& result) {
-  auto& command = add_command(app, "info", "Tell what a recording has",
-                              {{"skein info flight.mcap", "Channels, counts, times, drops"}});
-  auto& arguments = arguments_of(command, show_recording, result);
-  command.add_option("FILE", arguments.file, "A recording")->type_name(kFile)->required();
-  add_json(command, arguments.json);
-  add_exit_codes(command);
 }
 
 void add_export(CLI::App& app, int& result) {
@@ -117,14 +50,80 @@ void add_export(CLI::App& app, int& result) {
   add_json(command, arguments.json, "what was written");
   add_exit_codes(command);
 }
+const Row kExportRow(recording_commands, add_export);
+
+void add_info(CLI::App& app, int& result) {
+  auto& command = add_command(app, "info", "Tell what a recording has",
+                              {{"skein info flight.mcap", "Channels, counts, times, drops"}});
+  auto& arguments = arguments_of(command, show_recording, result);
+  command.add_option("FILE", arguments.file, "A recording")->type_name(kFile)->required();
+  add_json(command, arguments.json);
+  add_exit_codes(command);
+}
+const Row kInfoRow(recording_commands, add_info);
+
+void add_record(CLI::App& app, int& result) {
+  auto& command = add_command(
+      app, "record",
+      "Record a mission while it flies\n\n"
+      "Topics, calls with their arguments and results, and decisions go into a file in the MCAP "
+      "format, which Lichtblick and Foxglove open. After a crash, what was written until a second "
+      "before can be read. A call that never ran, or at which its provider died, has no arguments "
+      "there, as the provider tells them when it ends.",
+      {{"skein record --domain 42", "All of a mission, until Ctrl-C"},
+       {"skein record --domain 42 --topics pose,track --only-topics --for 60", "Two topics alone"},
+       {"skein record --profile mission.xml --output flight.mcap --split 500",
+        "flight_0.mcap, flight_1.mcap, ..."}});
+  auto& arguments = arguments_of(command, record, result);
+  add_onlooker(command, arguments);
+  command
+      .add_option("--output", arguments.output,
+                  "The file; default: mission_DATE_TIME.mcap, in this folder")
+      ->type_name(kFile);
+  add_topic_filter(command, arguments.topics, kTopic);
+  command.add_flag("--only-topics", arguments.only_topics, "Neither calls nor decisions");
+  add_duration(command, "--for", arguments.seconds, "How long; default: until interrupted",
+               Zero::Refused);
+  command
+      .add_option("--split", arguments.split_megabytes,
+                  "Begin a new file before one is larger than this; default: one file")
+      ->type_name("MEGABYTES")
+      ->check(above_zero());
+  add_json(command, arguments.json, "what was recorded");
+  add_exit_codes(command);
+}
+const Row kRecordRow(recording_commands, add_record);
+
+void add_replay(CLI::App& app, int& result) {
+  auto& command = add_command(
+      app, "replay",
+      "Publish the topics of a recording again, or make its decisions again\n\n"
+      "Where it is interrupted before all is published, it says how much was, and its exit code is "
+      "128 + N for signal N.",
+      {{"skein replay flight.mcap --domain 43", "In the recorded order and pace"},
+       {"skein replay flight.mcap --rate 10 --topics pose --domain 43", "One topic, faster"},
+       {"skein replay flight.mcap --decisions", "Exit code 1 where one comes out differently"}});
+  auto& arguments = arguments_of(command, replay_recording, result);
+  command.add_option("FILE", arguments.file, "A recording")->type_name(kFile)->required();
+  add_onlooker(command, arguments);
+  add_topic_filter(command, arguments.topics, "NAMES");  // those of FILE, not of a domain
+  command.add_option("--rate", arguments.rate, "So many times as fast as it was recorded")
+      ->check(above_zero())
+      ->type_name("NUMBER")
+      ->capture_default_str();
+  auto* decisions = command.add_flag("--decisions", arguments.decisions,
+                                     "Make the choices of the Heads again, bit for bit");
+  command
+      .add_option("--plugin", arguments.plugins,
+                  "A plugin whose selection strategies were used; may be given several times; "
+                  "default: Skein's own strategies alone")
+      ->type_name("NAME")
+      ->needs(decisions);
+  add_json(command, arguments.json,
+           "what was published; with --decisions a line for each that differs, and the counts");
+  add_exit_codes(command);
+}
+const Row kReplayRow(recording_commands, add_replay);
 
 }  // namespace
-
-void add_recording_commands(CLI::App& app, int& result) {
-  add_export(app, result);
-  add_info(app, result);
-  add_record(app, result);
-  add_replay(app, result);
-}
-
 }  // namespace skein::command

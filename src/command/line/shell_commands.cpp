@@ -10,6 +10,9 @@
 
 // Completion and manual pages, both made from the command line itself.
 namespace skein::command {
+
+Subcommands shell_commands;
+
 namespace {
 
 void write_manual(const CLI::App& app, const std::filesystem::path& folder) {
@@ -23,7 +26,7 @@ void write_manual(const CLI::App& app, const std::filesystem::path& folder) {
   });
 }
 
-void add_completion(CLI::App& app) {
+void add_completion(CLI::App& app, int& /*result*/) {
   auto& command = add_command(
       app, "completion", "Print what completes Skein's commands in a shell",
       {{"source <(skein completion bash)", "For this bash"},
@@ -36,6 +39,7 @@ void add_completion(CLI::App& app) {
       ->required();
   command.callback([shell] { std::cout << completion_script(*shell); });
 }
+const Row kCompletionRow(shell_commands, add_completion);
 
 int complete(const CLI::App& app, const std::vector<std::string>& words) {
   const Completion completion = completion_of(app, words);
@@ -63,9 +67,10 @@ void add_complete(CLI::App& app, int& result) {
   command.add_option("WORD", *words, "What was typed behind skein; the last may be a part");
   command.callback([&app, &result, words] { result = complete(app, *words); });
 }
+const Row kCompleteRow(shell_commands, add_complete);
 
 /// Hidden: the build runs it.
-void add_man(CLI::App& app) {
+void add_man(CLI::App& app, int& /*result*/) {
   auto& command = add_command(app, "man", "Write the manual pages into a folder",
                               {{"skein man share/man/man1", "One page for each command"}});
   command.group("");
@@ -75,13 +80,7 @@ void add_man(CLI::App& app) {
       ->required();
   command.callback([&app, folder] { write_manual(app, *folder); });
 }
+const Row kManRow(shell_commands, add_man);
 
 }  // namespace
-
-void add_shell_commands(CLI::App& app, int& result) {
-  add_completion(app);
-  add_complete(app, result);
-  add_man(app);
-}
-
 }  // namespace skein::command

@@ -3,6 +3,9 @@
 
 // Services and topics that are known by their description alone.
 namespace skein::command {
+
+Subcommands topic_commands;
+
 namespace {
 
 void add_call(CLI::App& app, int& result) {
@@ -43,6 +46,55 @@ void add_call(CLI::App& app, int& result) {
   add_json(command, arguments.json);
   add_exit_codes(command);
 }
+const Row kCallRow(topic_commands, add_call);
+
+void add_describe(CLI::App& app, int& result) {
+  auto& command =
+      add_command(app, "describe", "Print the IDL of a running service or of a topic",
+                  {{"skein describe INavigator --domain 42", "An interface and all its types"},
+                   {"skein describe pose --domain 42", "The type of a topic"}});
+  auto& arguments = arguments_of(command, describe, result);
+  command.add_option("NAME", arguments.name, "An interface, an entity, a topic or its type")
+      ->type_name(kServiceOrTopic)
+      ->required();
+  add_onlooker(command, arguments);
+  add_wait(command, arguments.seconds);
+  add_json(command, arguments.json);
+  add_exit_codes(command);
+}
+const Row kDescribeRow(topic_commands, add_describe);
+
+void add_topic(CLI::App& command, TopicArguments& arguments) {
+  command.add_option("TOPIC", arguments.topic, "Its name")->type_name(kTopic)->required();
+  add_onlooker(command, arguments);
+  add_duration(command, "--wait", arguments.wait, "How long to look for the topic", Zero::Taken)
+      ->default_str(default_duration(arguments.wait));
+}
+
+void add_topic_watching(CLI::App& command, TopicArguments& arguments, const char* what) {
+  add_duration(command, "--for", arguments.seconds, "How long to watch; default: until interrupted",
+               Zero::Refused);
+  command.add_option("--count", arguments.count, what)->type_name("NUMBER")->check(above_zero());
+  add_json(command, arguments.json);
+}
+
+void add_echo(CLI::App& app, int& result) {
+  auto& command = add_command(app, "echo",
+                              "Print the values of a topic as they come\n\n"
+                              "Exit code 1: fewer values came than --count says.",
+                              {{"skein echo pose --domain 42", "JSON, until Ctrl-C"},
+                               {"skein echo pose --count 1 --json", "One value, in one line"},
+                               {"skein echo pose --file flight.mcap", "What was recorded"}});
+  auto& arguments = arguments_of(command, echo, result);
+  add_topic(command, arguments);
+  command
+      .add_option("--file", arguments.file,
+                  "A recording whose values are printed; default: look at the domain")
+      ->type_name(kFile);
+  add_topic_watching(command, arguments, "End after so many values; default: no limit");
+  add_exit_codes(command);
+}
+const Row kEchoRow(topic_commands, add_echo);
 
 void add_param_options(CLI::App& command, ParamArguments& arguments) {
   add_onlooker(command, arguments);
@@ -101,74 +153,7 @@ void add_param(CLI::App& app, int& result) {
       ->required();
   add_param_options(set, changed);
 }
-
-void add_describe(CLI::App& app, int& result) {
-  auto& command =
-      add_command(app, "describe", "Print the IDL of a running service or of a topic",
-                  {{"skein describe INavigator --domain 42", "An interface and all its types"},
-                   {"skein describe pose --domain 42", "The type of a topic"}});
-  auto& arguments = arguments_of(command, describe, result);
-  command.add_option("NAME", arguments.name, "An interface, an entity, a topic or its type")
-      ->type_name(kServiceOrTopic)
-      ->required();
-  add_onlooker(command, arguments);
-  add_wait(command, arguments.seconds);
-  add_json(command, arguments.json);
-  add_exit_codes(command);
-}
-
-void add_topics(CLI::App& app, int& result) {
-  auto& command = add_command(app, "topics", "List who publishes and subscribes to what",
-                              {{"skein topics --domain 42", "Types, entities, QoS and counts"},
-                               {"skein topics --names", "A line for each topic"}});
-  auto& arguments = arguments_of(command, list_topics, result);
-  add_onlooker(command, arguments);
-  add_wait(command, arguments.seconds);
-  auto* names = command.add_flag("--names", arguments.names, "Print the topics' names alone");
-  add_json(command, arguments.json)->excludes(names);
-  add_exit_codes(command);
-}
-
-void add_topic(CLI::App& command, TopicArguments& arguments) {
-  command.add_option("TOPIC", arguments.topic, "Its name")->type_name(kTopic)->required();
-  add_onlooker(command, arguments);
-  add_duration(command, "--wait", arguments.wait, "How long to look for the topic", Zero::Taken)
-      ->default_str(default_duration(arguments.wait));
-}
-
-void add_topic_watching(CLI::App& command, TopicArguments& arguments, const char* what) {
-  add_duration(command, "--for", arguments.seconds, "How long to watch; default: until interrupted",
-               Zero::Refused);
-  command.add_option("--count", arguments.count, what)->type_name("NUMBER")->check(above_zero());
-  add_json(command, arguments.json);
-}
-
-void add_echo(CLI::App& app, int& result) {
-  auto& command = add_command(app, "echo",
-                              "Print the values of a topic as they come\n\n"
-                              "Exit code 1: fewer values came than --count says.",
-                              {{"skein echo pose --domain 42", "JSON, until Ctrl-C"},
-                               {"skein echo pose --count 1 --json", "One value, in one line"},
-                               {"skein echo pose --file flight.mcap", "What was recorded"}});
-  auto& arguments = arguments_of(command, echo, result);
-  add_topic(command, arguments);
-  command
-      .add_option("--file", arguments.file,
-                  "A recording whose values are printed; default: look at the domain")
-      ->type_name(kFile);
-  add_topic_watching(command, arguments, "End after so many values; default: no limit");
-  add_exit_codes(command);
-}
-
-void add_rate(CLI::App& app, int& result) {
-  auto& command = add_command(
-      app, "rate", "Measure how often values of a topic come, how evenly, how large they are",
-      {{"skein rate pose --domain 42", "A line a second, until Ctrl-C"}});
-  auto& arguments = arguments_of(command, show_rate, result);
-  add_topic(command, arguments);
-  add_topic_watching(command, arguments, "End after so many lines; default: no limit");
-  add_exit_codes(command);
-}
+const Row kParamRow(topic_commands, add_param);
 
 void add_publish(CLI::App& app, int& result) {
   auto& command = add_command(
@@ -192,17 +177,31 @@ void add_publish(CLI::App& app, int& result) {
   add_json(command, arguments.json, "what was published");
   add_exit_codes(command);
 }
+const Row kPublishRow(topic_commands, add_publish);
+
+void add_rate(CLI::App& app, int& result) {
+  auto& command = add_command(
+      app, "rate", "Measure how often values of a topic come, how evenly, how large they are",
+      {{"skein rate pose --domain 42", "A line a second, until Ctrl-C"}});
+  auto& arguments = arguments_of(command, show_rate, result);
+  add_topic(command, arguments);
+  add_topic_watching(command, arguments, "End after so many lines; default: no limit");
+  add_exit_codes(command);
+}
+const Row kRateRow(topic_commands, add_rate);
+
+void add_topics(CLI::App& app, int& result) {
+  auto& command = add_command(app, "topics", "List who publishes and subscribes to what",
+                              {{"skein topics --domain 42", "Types, entities, QoS and counts"},
+                               {"skein topics --names", "A line for each topic"}});
+  auto& arguments = arguments_of(command, list_topics, result);
+  add_onlooker(command, arguments);
+  add_wait(command, arguments.seconds);
+  auto* names = command.add_flag("--names", arguments.names, "Print the topics' names alone");
+  add_json(command, arguments.json)->excludes(names);
+  add_exit_codes(command);
+}
+const Row kTopicsRow(topic_commands, add_topics);
 
 }  // namespace
-
-void add_topic_commands(CLI::App& app, int& result) {
-  add_call(app, result);
-  add_describe(app, result);
-  add_echo(app, result);
-  add_param(app, result);
-  add_publish(app, result);
-  add_rate(app, result);
-  add_topics(app, result);
-}
-
 }  // namespace skein::command

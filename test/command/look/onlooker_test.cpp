@@ -165,12 +165,13 @@ TEST_CASE("a peer that is stopped holds no command up") {
       nlohmann::json::parse(output_with({"peers", "--domain", "48", "--json"}, "uav-1/office"));
   const pid_t office = of_name(list, "uav-1/office")["pid"];
   REQUIRE(kill(office, SIGSTOP) == 0);
-  for (const std::vector<std::string>& words :
-       {std::vector<std::string>{"peers"}, {"graph"}, {"top", "--once"}, {"services"}}) {
+  std::vector<std::vector<std::string>> commands{{"top", "--once"}};
+  for (const std::string& command : commands_with("--wait")) commands.push_back({command});
+  CHECK(commands.size() > 4);
+  for (std::vector<std::string>& words : commands) {
     CAPTURE(words.front());
-    auto all = words;
-    all.insert(all.end(), {"--domain", "48"});
-    CommandRun run(all);
+    words.insert(words.end(), {"--domain", "48"});
+    CommandRun run(words);
     CHECK(run.wait() == 0);
   }
   kill(office, SIGCONT);
@@ -402,7 +403,7 @@ TEST_CASE("what is not there is told with the domain, and by an exit code of its
 
 TEST_CASE("who is told not to wait does not") {
   if (!installed("cyclonedds")) return;
-  for (const char* command : {"topics", "services", "peers", "graph"}) {
+  for (const std::string& command : commands_with("--wait")) {
     CAPTURE(command);
     CHECK(ended({command, "--domain", "70", "--wait", "0"}).code == 0);
   }
