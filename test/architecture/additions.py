@@ -2,7 +2,7 @@
 
 What it takes to add something: addition_kinds/KIND.py holds the edits that add a dummy, each of which is one place. `count` prints how many
 places each kind touches; the exit code is 1 if one touches more than its MOST, or if an edit does not fit the tree. `try` edits a copy of the
-tracked files, which it makes in the folder of the build, builds the kind's TARGETS there, and runs its TESTS.
+files, which it makes in the folder of the build, builds the kind's TARGETS there, and runs its TESTS.
 """
 
 import argparse
@@ -11,6 +11,7 @@ import glob
 import os
 import runpy
 import shutil
+import signal
 import subprocess
 import sys
 
@@ -60,6 +61,8 @@ def edited(root, edits):
 
 def count(root, kinds):
     """A kind that touches more places than it may, or an edit that does not fit. Prints the places of each kind."""
+    if not kinds:
+        yield f"{KINDS}: there are none"
     for name, kind in kinds.items():
         print(f"{name}: {len(kind['EDITS'])} places")
         if len(kind["EDITS"]) > kind["MOST"]:
@@ -106,8 +109,9 @@ def main():
         return 1 if violations else 0
     if arguments.kind not in kinds:
         parser.error(f"there is no kind '{arguments.kind}'; known are {', '.join(kinds)}")
-    tracked = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, check=True, capture_output=True, text=True).stdout
-    return attempt(ROOT, tracked.rstrip("\0").split("\0"), arguments.build, arguments.kind, kinds[arguments.kind])
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # so that the copy goes
+    files = subprocess.run(["git", "ls-files", "-z", "-co", "--exclude-standard"], cwd=ROOT, check=True, capture_output=True, text=True).stdout
+    return attempt(ROOT, files.rstrip("\0").split("\0"), arguments.build, arguments.kind, kinds[arguments.kind])
 
 
 if __name__ == "__main__":

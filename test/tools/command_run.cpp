@@ -90,6 +90,7 @@ std::vector<std::string> commands_with(const std::string& option) {
         text.find("\n  " + option + " ") != std::string::npos)
       found.push_back(name);
   }
+  if (found.empty()) throw std::logic_error("no command's help names " + option);
   return found;
 }
 

@@ -30,8 +30,8 @@ extern Subcommands measuring_commands;
 extern Subcommands shell_commands;
 
 /// Stands behind the function that adds a subcommand, in its file, and makes it one of these.
-struct Row {
-  Row(Subcommands& all, AddCommand add) { all.push_back(add); }
+struct SubcommandRow {
+  SubcommandRow(Subcommands& all, AddCommand add) { all.push_back(add); }
 };
 
 /// A command line as a user would type it, and what it does.

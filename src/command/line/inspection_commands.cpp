@@ -30,7 +30,7 @@ void add_calls(CLI::App& app, int& result) {
   add_json(command, arguments.json, "each step a line");
   add_exit_codes(command);
 }
-const Row kCallsRow(inspection_commands, add_calls);
+const SubcommandRow kCallsRow(inspection_commands, add_calls);
 
 void add_decisions(CLI::App& app, int& result) {
   auto& command = add_command(
@@ -65,7 +65,7 @@ void add_decisions(CLI::App& app, int& result) {
       ->needs(replays);
   add_exit_codes(command);
 }
-const Row kDecisionsRow(inspection_commands, add_decisions);
+const SubcommandRow kDecisionsRow(inspection_commands, add_decisions);
 
 /// Where a command serves, and the token of its URL.
 void add_server(CLI::App& command, std::uint16_t& port, std::string& token, const char* variable) {
@@ -144,7 +144,7 @@ void add_designer(CLI::App& app, int& result) {
                    "Open no browser; default: the desktop's, if there is one");
   add_exit_codes(command);
 }
-const Row kDesignerRow(inspection_commands, add_designer);
+const SubcommandRow kDesignerRow(inspection_commands, add_designer);
 
 void add_graph(CLI::App& app, int& result) {
   auto& command = add_command(
@@ -166,7 +166,7 @@ void add_graph(CLI::App& app, int& result) {
   add_json(command, arguments.json, "as --format json")->excludes(format);
   add_exit_codes(command);
 }
-const Row kGraphRow(inspection_commands, add_graph);
+const SubcommandRow kGraphRow(inspection_commands, add_graph);
 
 void add_log(CLI::App& app, int& result) {
   auto& command = add_command(
@@ -189,7 +189,7 @@ void add_log(CLI::App& app, int& result) {
   add_json(command, arguments.json, "each line a line");
   add_exit_codes(command);
 }
-const Row kLogRow(inspection_commands, add_log);
+const SubcommandRow kLogRow(inspection_commands, add_log);
 
 void add_peers(CLI::App& app, int& result) {
   auto& command =
@@ -202,7 +202,7 @@ void add_peers(CLI::App& app, int& result) {
   add_json(command, arguments.json, "a list");
   add_exit_codes(command);
 }
-const Row kPeersRow(inspection_commands, add_peers);
+const SubcommandRow kPeersRow(inspection_commands, add_peers);
 
 void add_services(CLI::App& app, int& result) {
   auto& command = add_command(
@@ -221,7 +221,7 @@ void add_services(CLI::App& app, int& result) {
   add_json(command, arguments.json, "a list");
   add_exit_codes(command);
 }
-const Row kServicesRow(inspection_commands, add_services);
+const SubcommandRow kServicesRow(inspection_commands, add_services);
 
 void add_top(CLI::App& app, int& result) {
   auto& command = add_command(
@@ -245,7 +245,7 @@ void add_top(CLI::App& app, int& result) {
   command.add_flag("--tools", arguments.tools, "Show Skein's own commands, too");
   add_exit_codes(command);
 }
-const Row kTopRow(inspection_commands, add_top);
+const SubcommandRow kTopRow(inspection_commands, add_top);
 
 void add_view(CLI::App& app, int& result) {
   auto& command =
@@ -264,7 +264,7 @@ void add_view(CLI::App& app, int& result) {
                    "Let those who look also call services: they can then steer the mission");
   add_exit_codes(command);
 }
-const Row kViewRow(inspection_commands, add_view);
+const SubcommandRow kViewRow(inspection_commands, add_view);
 
 }  // namespace
 }  // namespace skein::command

@@ -129,7 +129,7 @@ void add_bench(CLI::App& app, int& result) {
   add_discovery(bench, result);
   add_compare(bench, result);
 }
-const Row kBenchRow(measuring_commands, add_bench);
+const SubcommandRow kBenchRow(measuring_commands, add_bench);
 
 }  // namespace
 }  // namespace skein::command

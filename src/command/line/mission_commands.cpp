@@ -1,4 +1,3 @@
-
 #include "command/commands.hpp"
 #include "command_line.hpp"
 #include "mission/process/exit_codes.hpp"
@@ -63,8 +62,9 @@ void add_check(CLI::App& app, int& result) {
       ->type_name(kFile);
   add_host(command, arguments.host);
   add_json(command, arguments.json);
+  add_exit_codes(command, launch::kPlanning);
 }
-const Row kCheckRow(mission_commands, add_check);
+const SubcommandRow kCheckRow(mission_commands, add_check);
 
 void add_doctor(CLI::App& app, int& result) {
   auto& command = add_command(
@@ -93,7 +93,7 @@ void add_doctor(CLI::App& app, int& result) {
   add_json(command, arguments.json, "an object with the list `findings`");
   add_exit_codes(command, launch::kDoctor);
 }
-const Row kDoctorRow(mission_commands, add_doctor);
+const SubcommandRow kDoctorRow(mission_commands, add_doctor);
 
 void add_launch(CLI::App& app, int& result) {
   auto& command = add_command(
@@ -133,7 +133,7 @@ void add_launch(CLI::App& app, int& result) {
       ->check(CLI::Validator(CLI::Range(1, 1000)).description(""));
   add_exit_codes(command, launch::kLaunch);
 }
-const Row kLaunchRow(mission_commands, add_launch);
+const SubcommandRow kLaunchRow(mission_commands, add_launch);
 
 void add_peer(CLI::App& app, int& result) {
   auto& command = add_command(
@@ -149,7 +149,7 @@ void add_peer(CLI::App& app, int& result) {
           "For its components to read; after -- where one begins with a dash; default: none")
       ->type_name("WORD");
 }
-const Row kPeerRow(mission_commands, add_peer);
+const SubcommandRow kPeerRow(mission_commands, add_peer);
 
 CLI::Option* add_running(CLI::App& command, RunningArguments& arguments) {
   CLI::Option* profile = add_profile(command, arguments.profile);
@@ -167,7 +167,7 @@ void add_restart(CLI::App& app, int& result) {
   add_running(command, arguments)->required();
   add_process(command, arguments.process);
 }
-const Row kRestartRow(mission_commands, add_restart);
+const SubcommandRow kRestartRow(mission_commands, add_restart);
 
 void add_status(CLI::App& app, int& result) {
   auto& command =
@@ -179,7 +179,7 @@ void add_status(CLI::App& app, int& result) {
       ->description("Mission profile (XML); default: all missions that this user flies here");
   add_json(command, arguments.json);
 }
-const Row kStatusRow(mission_commands, add_status);
+const SubcommandRow kStatusRow(mission_commands, add_status);
 
 void add_script(CLI::App& app, int& result) {
   auto& command = add_command(app, "script", "Write a mission as a shell script",
@@ -189,8 +189,9 @@ void add_script(CLI::App& app, int& result) {
   add_plan(command, arguments);
   command.add_option("--output", arguments.output, "The script's file; default: standard output")
       ->type_name(kFile);
+  add_exit_codes(command, launch::kPlanning);
 }
-const Row kScriptRow(mission_commands, add_script);
+const SubcommandRow kScriptRow(mission_commands, add_script);
 
 void add_names(CLI::App& command, const std::string& option, std::vector<std::string>& names,
                const std::string& what, const char* type) {
@@ -240,8 +241,9 @@ void add_new(CLI::App& app, int& result) {
       .add_option("--folder", arguments.folder,
                   "The folder in which the component gets its own; default: the present one")
       ->type_name(kDirectory);
+  add_exit_codes(command, launch::kPlanning);
 }
-const Row kNewRow(mission_commands, add_new);
+const SubcommandRow kNewRow(mission_commands, add_new);
 
 /// Hidden: `launch --ssh` runs it.
 void add_attend(CLI::App& app, int& result) {
@@ -252,7 +254,7 @@ void add_attend(CLI::App& app, int& result) {
   command.add_flag("--verbose", arguments.verbose,
                    "Show the start, readiness and end of each process");
 }
-const Row kAttendRow(mission_commands, add_attend);
+const SubcommandRow kAttendRow(mission_commands, add_attend);
 
 }  // namespace
 }  // namespace skein::command

@@ -50,7 +50,7 @@ void add_export(CLI::App& app, int& result) {
   add_json(command, arguments.json, "what was written");
   add_exit_codes(command);
 }
-const Row kExportRow(recording_commands, add_export);
+const SubcommandRow kExportRow(recording_commands, add_export);
 
 void add_info(CLI::App& app, int& result) {
   auto& command = add_command(app, "info", "Tell what a recording has",
@@ -60,7 +60,7 @@ void add_info(CLI::App& app, int& result) {
   add_json(command, arguments.json);
   add_exit_codes(command);
 }
-const Row kInfoRow(recording_commands, add_info);
+const SubcommandRow kInfoRow(recording_commands, add_info);
 
 void add_record(CLI::App& app, int& result) {
   auto& command = add_command(
@@ -92,7 +92,7 @@ void add_record(CLI::App& app, int& result) {
   add_json(command, arguments.json, "what was recorded");
   add_exit_codes(command);
 }
-const Row kRecordRow(recording_commands, add_record);
+const SubcommandRow kRecordRow(recording_commands, add_record);
 
 void add_replay(CLI::App& app, int& result) {
   auto& command = add_command(
@@ -123,7 +123,7 @@ void add_replay(CLI::App& app, int& result) {
            "what was published; with --decisions a line for each that differs, and the counts");
   add_exit_codes(command);
 }
-const Row kReplayRow(recording_commands, add_replay);
+const SubcommandRow kReplayRow(recording_commands, add_replay);
 
 }  // namespace
 }  // namespace skein::command

@@ -39,7 +39,7 @@ void add_completion(CLI::App& app, int& /*result*/) {
       ->required();
   command.callback([shell] { std::cout << completion_script(*shell); });
 }
-const Row kCompletionRow(shell_commands, add_completion);
+const SubcommandRow kCompletionRow(shell_commands, add_completion);
 
 int complete(const CLI::App& app, const std::vector<std::string>& words) {
   const Completion completion = completion_of(app, words);
@@ -67,7 +67,7 @@ void add_complete(CLI::App& app, int& result) {
   command.add_option("WORD", *words, "What was typed behind skein; the last may be a part");
   command.callback([&app, &result, words] { result = complete(app, *words); });
 }
-const Row kCompleteRow(shell_commands, add_complete);
+const SubcommandRow kCompleteRow(shell_commands, add_complete);
 
 /// Hidden: the build runs it.
 void add_man(CLI::App& app, int& /*result*/) {
@@ -80,7 +80,7 @@ void add_man(CLI::App& app, int& /*result*/) {
       ->required();
   command.callback([&app, folder] { write_manual(app, *folder); });
 }
-const Row kManRow(shell_commands, add_man);
+const SubcommandRow kManRow(shell_commands, add_man);
 
 }  // namespace
 }  // namespace skein::command

@@ -46,7 +46,7 @@ void add_call(CLI::App& app, int& result) {
   add_json(command, arguments.json);
   add_exit_codes(command);
 }
-const Row kCallRow(topic_commands, add_call);
+const SubcommandRow kCallRow(topic_commands, add_call);
 
 void add_describe(CLI::App& app, int& result) {
   auto& command =
@@ -62,7 +62,7 @@ void add_describe(CLI::App& app, int& result) {
   add_json(command, arguments.json);
   add_exit_codes(command);
 }
-const Row kDescribeRow(topic_commands, add_describe);
+const SubcommandRow kDescribeRow(topic_commands, add_describe);
 
 void add_topic(CLI::App& command, TopicArguments& arguments) {
   command.add_option("TOPIC", arguments.topic, "Its name")->type_name(kTopic)->required();
@@ -94,7 +94,7 @@ void add_echo(CLI::App& app, int& result) {
   add_topic_watching(command, arguments, "End after so many values; default: no limit");
   add_exit_codes(command);
 }
-const Row kEchoRow(topic_commands, add_echo);
+const SubcommandRow kEchoRow(topic_commands, add_echo);
 
 void add_param_options(CLI::App& command, ParamArguments& arguments) {
   add_onlooker(command, arguments);
@@ -153,7 +153,7 @@ void add_param(CLI::App& app, int& result) {
       ->required();
   add_param_options(set, changed);
 }
-const Row kParamRow(topic_commands, add_param);
+const SubcommandRow kParamRow(topic_commands, add_param);
 
 void add_publish(CLI::App& app, int& result) {
   auto& command = add_command(
@@ -177,7 +177,7 @@ void add_publish(CLI::App& app, int& result) {
   add_json(command, arguments.json, "what was published");
   add_exit_codes(command);
 }
-const Row kPublishRow(topic_commands, add_publish);
+const SubcommandRow kPublishRow(topic_commands, add_publish);
 
 void add_rate(CLI::App& app, int& result) {
   auto& command = add_command(
@@ -188,7 +188,7 @@ void add_rate(CLI::App& app, int& result) {
   add_topic_watching(command, arguments, "End after so many lines; default: no limit");
   add_exit_codes(command);
 }
-const Row kRateRow(topic_commands, add_rate);
+const SubcommandRow kRateRow(topic_commands, add_rate);
 
 void add_topics(CLI::App& app, int& result) {
   auto& command = add_command(app, "topics", "List who publishes and subscribes to what",
@@ -201,7 +201,7 @@ void add_topics(CLI::App& app, int& result) {
   add_json(command, arguments.json)->excludes(names);
   add_exit_codes(command);
 }
-const Row kTopicsRow(topic_commands, add_topics);
+const SubcommandRow kTopicsRow(topic_commands, add_topics);
 
 }  // namespace
 }  // namespace skein::command

@@ -14,6 +14,7 @@
 #include "dds/port/options_check.hpp"
 #include "mission/peer/peer.hpp"
 #include "mission/process/address_space.hpp"
+#include "mission/process/exit_codes.hpp"
 #include "mission/profile/mission_profile.hpp"
 #include "mission/supervise/launch_plan.hpp"
 #include "skein/entity.hpp"

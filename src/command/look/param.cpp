@@ -13,6 +13,7 @@
 #include "command/print/time_limits.hpp"
 #include "core/printable.hpp"
 #include "core/suggestion.hpp"
+#include "mission/process/exit_codes.hpp"
 #include "peer_parameters.hpp"
 #include "service_names.hpp"
 #include "skein/discovery.idl.hpp"

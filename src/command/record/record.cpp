@@ -17,6 +17,7 @@
 #include "core/suggestion.hpp"
 #include "core/system/whole_file.hpp"
 #include "core/wall_clock.hpp"
+#include "mission/process/exit_codes.hpp"
 #include "recording/recorder.hpp"
 #include "skein/detail/type_support.hpp"
 #include "skein/entity.hpp"

@@ -26,6 +26,7 @@ inline constexpr CommandKind kLaunch{"launch"};
 inline constexpr CommandKind kLooking{"looking at a domain or a recording"};
 inline constexpr CommandKind kAsking{"status and restart"};  ///< Which ask a launcher.
 inline constexpr CommandKind kDoctor{"doctor"};
+inline constexpr CommandKind kPlanning{"check, script and new"};
 
 struct ExitCode {
   const CommandKind* of;  ///< Null: of all.
@@ -41,6 +42,7 @@ inline constexpr std::array kExitCodes{
     ExitCode{&kDoctor, "0", "nothing is wrong"},
     ExitCode{&kLooking, "0", "done"},
     ExitCode{&kAsking, "0", "done"},
+    ExitCode{&kPlanning, "0", "done; check: nothing is wrong"},
     ExitCode{&kLaunch, "1 to 255",
              "the code of the mission's peer; 128 + N if it ended by signal N"},
     ExitCode{&kDoctor, "1", "there are warnings"},
@@ -60,9 +62,10 @@ inline constexpr std::array kExitCodes{
              "something could not be started, or a process with on_loss=abort never became ready"},
     ExitCode{&kLooking, "71", "it could not join the domain, or the call failed at the other side"},
     ExitCode{&kDoctor, "71", "the system refused what it needs to look"},
+    ExitCode{&kPlanning, "71", "the system refused what it needs"},
     ExitCode{&kAsking, "71",
              "the mission does not fly here, or its launcher refused or did not answer"},
-    ExitCode{nullptr, "74", "all else went well, but the output, or a file, could not be written"},
+    ExitCode{nullptr, "74", "the output, or a file, could not be made or written"},
     ExitCode{&kLaunch, "75",
              "all went well, but a process with on_loss=degrade was lost on the way"},
     ExitCode{&kLaunch, "76", "the mission ended by an exception, which is on stderr"},
@@ -73,6 +76,7 @@ inline constexpr std::array kExitCodes{
     ExitCode{&kLooking, "78", "a file, a name, JSON or a parameter's value is wrong"},
     ExitCode{&kDoctor, "78", "an option or a variable of the environment is wrong"},
     ExitCode{&kAsking, "78", "the profile is wrong"},
+    ExitCode{&kPlanning, "78", "the profile, a file or a name is wrong"},
     ExitCode{&kLooking, "124", "no answer came in time"},
     ExitCode{nullptr, "128 + N", "interrupted by signal N before it was done"},
 };

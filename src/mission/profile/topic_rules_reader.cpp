@@ -105,7 +105,8 @@ TopicRules read_rules(const XmlElement& topic) {
   rules.inherited = name.inherited;
   // Without a value the member stays as the code says.
   const auto set = [&](auto member, const auto& value) {
-    if (value) rules.changes.emplace_back([=](TopicQos& qos) { qos.*member = *value; });
+    if (!value) return;
+    rules.changes.emplace_back([member, held = *value](TopicQos& qos) { qos.*member = held; });
   };
   set(&TopicQos::reliable, read_word(topic, "reliability", "best-effort", "reliable"));
   const auto transient_local = read_word(topic, "durability", "volatile", "transient-local");

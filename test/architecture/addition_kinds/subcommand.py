@@ -35,7 +35,7 @@ int show_dummy(const DummyArguments& arguments);
     ),
     Edit(
         "src/command/line/inspection_commands.cpp",
-        after="const Row kDesignerRow(inspection_commands, add_designer);\n",
+        after="const SubcommandRow kDesignerRow(inspection_commands, add_designer);\n",
         text="""
 void add_dummy(CLI::App& app, int& result) {
   auto& command = add_command(app, "dummy", "Tell what it was told",
@@ -45,7 +45,7 @@ void add_dummy(CLI::App& app, int& result) {
   add_wait(command, arguments.seconds);
   add_exit_codes(command);
 }
-const Row kDummyRow(inspection_commands, add_dummy);
+const SubcommandRow kDummyRow(inspection_commands, add_dummy);
 """,
     ),
 )

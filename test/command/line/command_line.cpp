@@ -201,24 +201,32 @@ TEST_CASE("help says once what a length of time is, where an option takes one") 
 TEST_CASE(
     "each kind of command lists its exit codes, and the whole what each means for each kind") {
   const CommandLineRun line;
-  const auto lists = [&](const CLI::App& command, const launch::CommandKind& kind) {
-    const auto listed = words_of(command.get_footer());
+  const auto lists = [](const CLI::App& command, const launch::CommandKind& kind) {
+    const std::string footer = command.get_footer();
+    const auto listed = words_of(footer.substr(footer.find("Exit codes:")));
+    std::size_t own = 0;
     for (const launch::ExitCode& row : launch::kExitCodes) {
       CAPTURE(command.get_name(), std::string(row.code), std::string(row.meaning));
       if (row.of && row.of != &kind) continue;
-      const auto meaning = words_of(std::string(row.meaning));
-      CHECK_FALSE(std::ranges::search(listed, meaning).empty());
+      const auto words = words_of(std::string(row.code) + " " + std::string(row.meaning));
+      CHECK_FALSE(std::ranges::search(listed, words).empty());
+      own += words.size();
     }
+    CHECK(listed.size() == own + 2);  // and the heading
   };
   for (const char* command : {"call", "echo", "describe", "info"})
     lists(*line.command_of(std::string("skein ") + command), launch::kLooking);
   for (const char* command : {"status", "restart"})
     lists(*line.command_of(std::string("skein ") + command), launch::kAsking);
+  for (const char* command : {"check", "script", "new"})
+    lists(*line.command_of(std::string("skein ") + command), launch::kPlanning);
   lists(*line.command_of("skein launch"), launch::kLaunch);
   lists(*line.command_of("skein doctor"), launch::kDoctor);
-  for (const launch::CommandKind* kind :
-       {&launch::kLaunch, &launch::kLooking, &launch::kAsking, &launch::kDoctor})
-    lists(line.app, *kind);
+  const auto all = words_of(line.app.help());
+  for (const launch::ExitCode& row : launch::kExitCodes) {
+    const std::string of = row.of ? std::string(row.of->name) + ": " : "";
+    CHECK_FALSE(std::ranges::search(all, words_of(of + std::string(row.meaning))).empty());
+  }
 }
 
 TEST_CASE("the help of decisions says what is true until a decision is made") {

@@ -14,7 +14,7 @@ const all = (element, name) => [...(element?.children ?? [])].filter((each) => e
 /** @param {Element|undefined} element */
 function documentation(element) {
   const text = all(all(element, "annotation")[0], "documentation")[0]?.textContent ?? "";
-  return text.replaceAll("`", "").replace(/\s+/g, " ").trim();
+  return text.replace(/[`*]/g, "").replace(/\s+/g, " ").trim();
 }
 
 export class Schema {
