@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <map>
 #include <new>
 #include <numeric>
 #include <random>
@@ -446,9 +447,16 @@ class AttackingProcess {
   pid_t pid_ = 0;
 };
 
-std::ptrdiff_t open_descriptors() {
-  return std::distance(std::filesystem::directory_iterator("/proc/self/fd"),
-                       std::filesystem::directory_iterator{});
+/// How many descriptors are open of each kind, as `socket:[]` or `anon_inode:[eventfd]`.
+std::map<std::string, int> open_descriptors() {
+  std::map<std::string, int> open;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+    std::error_code gone;
+    std::string kind = std::filesystem::read_symlink(entry.path(), gone).string();
+    std::erase_if(kind, [](char each) { return each >= '0' && each <= '9'; });
+    if (!gone) ++open[kind];
+  }
+  return open;
 }
 
 int mapped_memory() {
@@ -488,7 +496,7 @@ class Holding {
 
  private:
   const int mapped_ = mapped_memory();
-  const std::ptrdiff_t descriptors_ = open_descriptors();
+  const std::map<std::string, int> descriptors_ = open_descriptors();
 };
 
 /// Attacks a provider, of which `call` is another client's call, until that is `enough`.
