@@ -22,6 +22,12 @@
 /// an entity writes only while somebody does.
 namespace skein::introspection {
 
+struct CallEvents;
+struct CallRecords;
+struct Decision;
+struct LogLine;
+struct ServiceStatistics;
+
 /// One of these topics, without its type. The texts are literals.
 struct AnyTopic {
   const char* name;
@@ -43,34 +49,34 @@ struct Topic : AnyTopic {};
 /// What each entity tells of itself; the types are those of introspection.idl. Who records, views
 /// or imitates entities goes by this table.
 inline constexpr std::tuple kTopics{
-    Topic<struct CallEvents>{{.name = "skein/calls",
-                              .type_name = "skein::introspection::CallEvents",
-                              .history_depth = 64,
-                              .interval = std::chrono::milliseconds(25),
-                              .recorded = true,
-                              .viewed = true}},
+    Topic<CallEvents>{{.name = "skein/calls",
+                       .type_name = "skein::introspection::CallEvents",
+                       .history_depth = 64,
+                       .interval = std::chrono::milliseconds(25),
+                       .recorded = true,
+                       .viewed = true}},
     // A Recorder takes them apart, see RecordedCalls.
-    Topic<struct CallRecords>{{.name = "skein/call_records",
-                               .type_name = "skein::introspection::CallRecords",
-                               .history_depth = 256,
-                               .reliable = true,
-                               .interval = std::chrono::milliseconds(25)}},
-    Topic<struct Decision>{{.name = "skein/decisions",
-                            .type_name = "skein::introspection::Decision",
-                            .history_depth = 64,
-                            .recorded = true,
-                            .viewed = true}},
-    Topic<struct LogLine>{{.name = "skein/log",
-                           .type_name = "skein::introspection::LogLine",
-                           .history_depth = 256,
-                           .reliable = true,
-                           .interval = std::chrono::milliseconds(200)}},
-    Topic<struct ServiceStatistics>{{.name = "skein/statistics",
-                                     .type_name = "skein::introspection::ServiceStatistics",
-                                     .keyed = true,
-                                     .history_depth = 1,
-                                     .interval = std::chrono::milliseconds(1000),
-                                     .viewed = true}},
+    Topic<CallRecords>{{.name = "skein/call_records",
+                        .type_name = "skein::introspection::CallRecords",
+                        .history_depth = 256,
+                        .reliable = true,
+                        .interval = std::chrono::milliseconds(25)}},
+    Topic<Decision>{{.name = "skein/decisions",
+                     .type_name = "skein::introspection::Decision",
+                     .history_depth = 64,
+                     .recorded = true,
+                     .viewed = true}},
+    Topic<LogLine>{{.name = "skein/log",
+                    .type_name = "skein::introspection::LogLine",
+                    .history_depth = 256,
+                    .reliable = true,
+                    .interval = std::chrono::milliseconds(200)}},
+    Topic<ServiceStatistics>{{.name = "skein/statistics",
+                              .type_name = "skein::introspection::ServiceStatistics",
+                              .keyed = true,
+                              .history_depth = 1,
+                              .interval = std::chrono::milliseconds(1000),
+                              .viewed = true}},
 };
 
 /// The one that carries values of that type.

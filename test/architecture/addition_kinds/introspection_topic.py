@@ -15,10 +15,11 @@ EDITS = (
 
 """,
     ),
+    Edit("src/rpc/service/introspection_topic.hpp", after="struct Decision;\n", text="struct Dummy;\n"),
     Edit(
         "src/rpc/service/introspection_topic.hpp",
         before="};\n\n/// The one that carries values of that type.\n",
-        text="""    Topic<struct Dummy>{{.name = "skein/dummy",
+        text="""    Topic<Dummy>{{.name = "skein/dummy",
                          .type_name = "skein::introspection::Dummy",
                          .keyed = true,
                          .history_depth = 1,
