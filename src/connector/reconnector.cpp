@@ -9,7 +9,7 @@ ProviderConnection Reconnector::acquire(ProviderQuery wanted) {
   if (auto connection = pool_.ready(wanted)) return *connection;
   std::lock_guard one_at_a_time(connecting_);
   if (auto connection = pool_.ready(wanted)) return *connection;
-  const ProviderConnection main = pool_.main();
+  ProviderConnection main = pool_.main();
   // A suspect provider is better than none, but not worth waiting for another.
   const bool fall_back = main.channel->connected() && !wanted.excludes(main.provider);
   if (fall_back) wanted.wait = false;
