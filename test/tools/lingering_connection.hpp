@@ -3,9 +3,12 @@
 #include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include <chrono>
+#include <csignal>
 #include <cstring>
+#include <ctime>
 #include <string>
 #include <utility>
 #include <vector>
@@ -64,7 +67,7 @@ class LingeringConnection {
     std::memcpy(CMSG_DATA(header), before.data(), octets);
     const bool sent =
         ::sendmsg(socket, &message, MSG_NOSIGNAL) == static_cast<ssize_t>(text.size());
-    if (sent) own_.reset();  // it does not wait: the one on its way is another
+    if (sent) close_own();
     return sent;
   }
 
@@ -82,6 +85,26 @@ class LingeringConnection {
   void release() { other_.reset(); }
 
  private:
+  /// The one on its way is another, so that this does not wait; unless the receiver has closed that
+  /// already: then a signal ends the wait after a second.
+  void close_own() {
+    struct sigaction interrupts {};
+    struct sigaction before {};
+    interrupts.sa_handler = [](int) {};
+    ::sigaction(SIGALRM, &interrupts, &before);
+    sigevent alarm{};
+    alarm.sigev_notify = SIGEV_THREAD_ID;
+    alarm.sigev_signo = SIGALRM;
+    alarm._sigev_un._tid = ::gettid();
+    const itimerspec each_second{{1, 0}, {1, 0}};
+    timer_t timer{};
+    ::timer_create(CLOCK_MONOTONIC, &alarm, &timer);
+    ::timer_settime(timer, 0, &each_second, nullptr);
+    own_.reset();
+    ::timer_delete(timer);
+    ::sigaction(SIGALRM, &before, nullptr);
+  }
+
   static constexpr int kFew = 4096;  // octets to fill the connection
 
   FileDescriptor own_;
