@@ -1,7 +1,5 @@
 #include "connections.hpp"
 
-#include <algorithm>
-
 #include "core/clock_wait.hpp"
 #include "skein/error.hpp"
 
@@ -26,21 +24,17 @@ void Connections::refuse_if_closed() const {
 void Connections::add(const std::shared_ptr<Channel>& channel) {
   {
     std::lock_guard lock(mutex_);
-    if (channels_.size() >= look_at_) {
-      std::erase_if(channels_, [](const std::weak_ptr<Channel>& weak) { return weak.expired(); });
-      look_at_ = std::max<std::size_t>(16, 2 * channels_.size());
-    }
-    channels_.push_back(channel);
+    channels_.push(channel);
     if (!closed_) return;
   }
   end(*channel);
 }
 
 std::vector<ConnectionInfo> Connections::infos() const {
-  std::vector<std::weak_ptr<Channel>> channels;
+  WeakList<Channel>::List channels;
   {
     std::lock_guard lock(mutex_);
-    channels = channels_;
+    channels = channels_.all();
   }
   std::vector<ConnectionInfo> all;
   for (const auto& weak : channels) {
@@ -57,11 +51,11 @@ void Connections::pause(Clock& clock, Instant end) {
 }
 
 void Connections::close() {
-  std::vector<std::weak_ptr<Channel>> channels;
+  WeakList<Channel>::List channels;
   {
     std::lock_guard lock(mutex_);
     closed_ = true;
-    channels.swap(channels_);
+    channels = channels_.take_all();
     changed_.notify_all();
   }
   for (const auto& weak : channels) {

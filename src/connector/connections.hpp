@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/weak_list.hpp"
 #include "skein/clock.hpp"
 #include "skein/detail/channel.hpp"
 
@@ -55,8 +56,7 @@ class Connections {
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   int openings_ = 0;
-  std::vector<std::weak_ptr<Channel>> channels_;  // and what has gone since the last look
-  std::size_t look_at_ = 16;
+  WeakList<Channel> channels_;
 };
 
 }  // namespace skein::connector

@@ -3,18 +3,10 @@
 #include <utility>
 
 #include "retrying_call.hpp"
-#include "skein/detail/call_memory.hpp"
 #include "skein/error.hpp"
 #include "waiting_call.hpp"
 
 namespace skein::connector {
-
-std::shared_ptr<void> copy_of(const TypeSupport& type, const void* value) {
-  std::shared_ptr<void> copy(type.make(), type.destroy,
-                             std::pmr::polymorphic_allocator<>(&call_memory()));
-  type.assign(copy.get(), value);
-  return copy;
-}
 
 FailoverChannel::FailoverChannel(ProviderConnection first, Connect connect,
                                  std::optional<Duration> hedge_after)

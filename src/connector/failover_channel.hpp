@@ -70,7 +70,4 @@ class FailoverChannel final : public Channel, public std::enable_shared_from_thi
   Reconnector reconnector_;
 };
 
-/// A copy that lives as long as the pointer.
-std::shared_ptr<void> copy_of(const TypeSupport& type, const void* value);
-
 }  // namespace skein::connector

@@ -1,6 +1,5 @@
 #include "provider_changes.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include "core/clock_wait.hpp"
@@ -14,11 +13,11 @@ void ProviderChanges::follow(std::shared_ptr<void> source) {
 }
 
 void ProviderChanges::on_change() {
-  std::vector<std::weak_ptr<WaitingCall>> waiting;
+  WeakList<WaitingCall>::List waiting;
   {
     std::lock_guard lock(mutex_);
     ++count_;
-    waiting.swap(waiting_);
+    waiting = waiting_.take_all();
     changed_.notify_all();
   }
   wake(std::move(waiting));
@@ -40,11 +39,7 @@ bool ProviderChanges::tell(std::uint64_t seen, std::weak_ptr<WaitingCall> call) 
     std::lock_guard lock(mutex_);
     if (closed_) return false;
     if (count_ == seen) {
-      if (waiting_.size() >= look_at_) {
-        std::erase_if(waiting_, [](const auto& weak) { return weak.expired(); });
-        look_at_ = std::max<std::size_t>(16, 2 * waiting_.size());
-      }
-      waiting_.push_back(std::move(call));
+      waiting_.push(std::move(call));
       return true;
     }
   }
@@ -54,19 +49,19 @@ bool ProviderChanges::tell(std::uint64_t seen, std::weak_ptr<WaitingCall> call) 
 
 void ProviderChanges::close() {
   std::shared_ptr<void> source;  // destroyed outside the lock, which its last report may wait for
-  std::vector<std::weak_ptr<WaitingCall>> waiting;
+  WeakList<WaitingCall>::List waiting;
   {
     std::lock_guard lock(mutex_);
     closed_ = true;
     source.swap(source_);
-    waiting.swap(waiting_);
+    waiting = waiting_.take_all();
     changed_.notify_all();
   }
   wake(std::move(waiting));
 }
 
 // They were admitted when they began.
-void ProviderChanges::wake(std::vector<std::weak_ptr<WaitingCall>> calls) {
+void ProviderChanges::wake(WeakList<WaitingCall>::List calls) {
   for (std::weak_ptr<WaitingCall>& call : calls) {
     continuations_.post_or_run([weak = std::move(call)] {
       if (const auto waiting = weak.lock()) waiting->look();

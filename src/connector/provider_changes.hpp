@@ -1,12 +1,11 @@
 #pragma once
 
 #include <condition_variable>
-#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <mutex>
-#include <vector>
 
+#include "core/weak_list.hpp"
 #include "skein/clock.hpp"
 #include "skein/executor.hpp"
 
@@ -22,7 +21,7 @@ class ProviderChanges {
   ProviderChanges(Clock& clock, Executor& continuations)
       : clock_(clock), continuations_(continuations) {}
 
-  /// Keeps what calls on_change(), until close().
+  /// Keeps the `source`, which calls on_change(), until close().
   void follow(std::shared_ptr<void> source);
   /// Other providers stand than before. Does not block.
   void on_change();
@@ -40,16 +39,15 @@ class ProviderChanges {
   void close();
 
  private:
-  void wake(std::vector<std::weak_ptr<WaitingCall>> calls);
+  void wake(WeakList<WaitingCall>::List calls);
 
   Clock& clock_;
   Executor& continuations_;
-  mutable std::mutex mutex_;  // guards what follows
+  mutable std::mutex mutex_;  // guards the members below
   std::condition_variable changed_;
   std::uint64_t count_ = 0;
   bool closed_ = false;
-  std::vector<std::weak_ptr<WaitingCall>> waiting_;  // some have ended since the last look
-  std::size_t look_at_ = 16;
+  WeakList<WaitingCall> waiting_;
   std::shared_ptr<void> source_;
 };
 

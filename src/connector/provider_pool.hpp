@@ -33,8 +33,8 @@ class ProviderPool {
   std::vector<ProviderConnection> close();
 
  private:
-  mutable std::mutex mutex_;                // guards what follows
-  ProviderConnection main_;                 // where calls go as long as it stands
+  mutable std::mutex mutex_;                // guards the members below
+  ProviderConnection main_;                 // calls prefer it as long as it is trusted
   std::vector<ProviderConnection> others_;  // opened for calls that the main one failed
   bool closed_ = false;
 };

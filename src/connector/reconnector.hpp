@@ -19,8 +19,8 @@ class Reconnector {
 
   Reconnector(ProviderPool& pool, Connect connect) : pool_(pool), connect_(std::move(connect)) {}
 
-  /// A connection, newly opened where none stands; a suspect one where that cannot be had. Blocks
-  /// while it connects, and throws what `connect` throws: NoProvider only where waiting helps.
+  /// A connection, newly opened if none stands; a suspect one if no other can be had. Blocks while
+  /// it connects, and passes on the errors of `connect`: NoProvider only if waiting helps.
   ProviderConnection acquire(ProviderQuery wanted);
 
  private:

@@ -20,7 +20,7 @@ std::optional<ErrorCode> code_of(const std::exception_ptr& error) {
   }
 }
 
-// The same error with more words; what is no Error stays as it is.
+// The same error with more words; an exception that is no Error stays as it is.
 std::exception_ptr with_words(const std::exception_ptr& error, const std::string& words) {
   try {
     try {

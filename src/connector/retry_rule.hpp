@@ -17,12 +17,12 @@ struct Asked {
   std::weak_ptr<Channel> channel;
 };
 
-/// Decides whether, when and with whom one call is tried again. FailoverChannel carries that out
-/// for a caller that waits, WaitingCall and RetryingCall for one that does not.
+/// Decides if, when and at which provider a call is tried again. FailoverChannel carries that out
+/// for a caller that waits, WaitingCall and RetryingCall for all other and for hedged calls.
 ///
-/// - Not sent: the connection ended before. The call is made elsewhere at once, whatever it does,
+/// - Not sent: the connection ended before. The call is made elsewhere at once, repeatable or not,
 ///   unless the client's own side has ended.
-/// - Sent, and not repeatable: whatever ends it is the answer.
+/// - Sent, and not repeatable: its outcome is the answer, also if that is a failure.
 /// - Sent, and repeatable: admit() after a failure, hedge() while the first provider is slow.
 /// - No provider stands that may be asked: the call waits for one until its deadline, unless a
 ///   provider that stands has failed it (see wanted_after()). none_found() is how that ends.

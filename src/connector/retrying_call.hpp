@@ -9,7 +9,7 @@
 
 namespace skein::connector {
 
-/// One try of a call, at one provider. Without an out struct of its own it fills the call's.
+/// One try of a RetryingCall, at one provider. Without its own out struct it fills the call's.
 class Attempt final : public PendingCall {
  public:
   Attempt(const ProviderConnection& connection, std::shared_ptr<PendingCall> call,
@@ -27,10 +27,10 @@ class Attempt final : public PendingCall {
   std::shared_ptr<void> own_out_;
 };
 
-/// A call to an idempotent operation: where a provider fails it moves to the next one, and where
-/// one is slow it is made at a second one, too, if the connection wants that. A failure arrives on
-/// whichever thread tells of it (a vendor's, the timer's); what connects and sends again is a task
-/// of the connection's continuations.
+/// A call to an idempotent operation: if a provider fails, it moves to the next; if one is slow, it
+/// is made at a second one, too, if the connection wants that. RetryRule (retry_rule.hpp) decides;
+/// FailoverChannel starts it, or repeats a blocking, unhedged call itself. A failure arrives on any
+/// thread (a vendor's, the timer's); a task of the connection's continuations connects and resends.
 class RetryingCall final : public WaitingCall {
  public:
   static void start(const std::shared_ptr<FailoverChannel>& channel,
@@ -54,7 +54,7 @@ class RetryingCall final : public WaitingCall {
   void cancel();
 
   const bool hedged_;  // then two tries may be made at once, and each has an out struct of its own
-  // The lock guards what follows, too.
+  // The lock guards the members below, too.
   Attempts attempts_{&call_memory()};
   TimerId hedge_timer_ = 0;
   bool cancelled_ = false;

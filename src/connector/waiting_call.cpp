@@ -8,6 +8,17 @@
 #include "skein/error.hpp"
 
 namespace skein::connector {
+namespace {
+
+// Lives as long as the pointer.
+std::shared_ptr<void> copy_of(const TypeSupport& type, const void* value) {
+  std::shared_ptr<void> copy(type.make(), type.destroy,
+                             std::pmr::polymorphic_allocator<>(&call_memory()));
+  type.assign(copy.get(), value);
+  return copy;
+}
+
+}  // namespace
 
 void WaitingCall::start(const std::shared_ptr<FailoverChannel>& channel,
                         const std::shared_ptr<PendingCall>& call, const void* in) {

@@ -14,6 +14,7 @@
 
 #include "skein/guid.hpp"
 #include "test/tools/eventually.hpp"
+#include "test/tools/forked_copy.hpp"
 
 using namespace skein;
 using namespace std::chrono_literals;
@@ -131,13 +132,7 @@ TEST_CASE("a server without a free descriptor leaves its clients waiting, and tr
 
 TEST_CASE("nothing is reported of a closed name of which a forked child has the socket") {
   Served served;
-  const pid_t child = fork();
-  REQUIRE(child >= 0);
-  if (child == 0) {
-    while (true) pause();
-  }
+  const skein::test::ForkedCopy child;
   served.server.close(served.name);
   CHECK_FALSE(served.serve());
-  kill(child, SIGKILL);
-  waitpid(child, nullptr, 0);
 }

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/weak_list.hpp"
 #include "rpc/service/call_journal.hpp"
 #include "rpc/service/invocation.hpp"
 #include "rpc/wire/conversion.hpp"
@@ -77,8 +78,7 @@ class QueuedCalls {
  private:
   std::atomic<bool> closed_{false};
   mutable std::mutex mutex_;
-  std::vector<std::weak_ptr<QueuedCall>> calls_;  // and what has ended since the last look
-  std::size_t look_at_ = 16;
+  WeakList<QueuedCall> calls_;
 };
 
 inline void QueuedCall::end(const void* out, std::exception_ptr error) {
@@ -97,25 +97,22 @@ inline void QueuedCall::end(const void* out, std::exception_ptr error) {
 inline bool QueuedCalls::add(const std::shared_ptr<QueuedCall>& call) {
   std::lock_guard lock(mutex_);
   if (closed_) return false;
-  if (calls_.size() >= look_at_) {
-    std::erase_if(calls_, QueuedCall::is_over);
-    look_at_ = std::max<std::size_t>(16, 2 * calls_.size());
-  }
-  calls_.push_back(call);
+  calls_.push(call, QueuedCall::is_over);
   return true;
 }
 
 inline std::size_t QueuedCalls::size() const {
   std::lock_guard lock(mutex_);
-  return static_cast<std::size_t>(std::ranges::count_if(calls_, std::not_fn(QueuedCall::is_over)));
+  return static_cast<std::size_t>(
+      std::ranges::count_if(calls_.all(), std::not_fn(QueuedCall::is_over)));
 }
 
 inline std::vector<std::shared_ptr<QueuedCall>> QueuedCalls::close() {
-  std::vector<std::weak_ptr<QueuedCall>> taken;
+  WeakList<QueuedCall>::List taken;
   {
     std::lock_guard lock(mutex_);
     closed_ = true;
-    taken.swap(calls_);
+    taken = calls_.take_all();
   }
   std::vector<std::shared_ptr<QueuedCall>> open;
   for (const auto& weak : taken) {
