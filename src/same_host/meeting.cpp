@@ -1,7 +1,6 @@
 #include "meeting.hpp"
 
 #include <pthread.h>
-#include <sys/epoll.h>
 #include <sys/eventfd.h>
 
 #include <algorithm>
@@ -19,7 +18,6 @@
 #include "doorbell.hpp"
 #include "handshake.hpp"
 #include "joining.hpp"
-#include "meeting_epoll.hpp"
 #include "offer.hpp"
 #include "skein/error.hpp"
 #include "turned_away.hpp"
@@ -29,8 +27,6 @@ namespace skein::same_host {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-constexpr std::uint64_t kWake = 0;
 
 }  // namespace
 
@@ -48,11 +44,10 @@ struct Meeting::State {
   };
 
   const Rules rules;
-  FileDescriptor epoll{epoll_create1(EPOLL_CLOEXEC)};
+  Epoll epoll;
   FileDescriptor wake{eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)};
   mutable std::mutex mutex;
   bool stopping = false;
-  std::uint64_t last_id = kWake;  // never used again, as descriptors are
   std::map<std::uint64_t, std::shared_ptr<Offer>> offers;
   std::map<std::uint64_t, Newcomer> newcomers;
   WatchedLinks watched{epoll};
@@ -63,9 +58,7 @@ struct Meeting::State {
   std::thread thread;
 
   explicit State(Rules rules_) : rules(std::move(rules_)) {
-    if (!epoll || !wake || !control_epoll(epoll, EPOLL_CTL_ADD, wake, kWake, EPOLLIN)) {
-      refuse_to_meet();
-    }
+    if (!epoll || !wake || epoll.add(wake, EPOLLIN) == 0) refuse_to_meet();
     thread = start_thread("skein-meeting", [this] { run(); });
   }
 
@@ -87,9 +80,7 @@ struct Meeting::State {
   void run() {
     pthread_setname_np(pthread_self(), "skein-meeting");
     while (true) {
-      epoll_event events[32];
-      // None where a signal interrupts it: one that stops the process does so, too.
-      const int count = std::max(epoll_wait(epoll.get(), events, 32, time_left()), 0);
+      auto events = epoll.wait(time_left());
       std::vector<Admitted> admitted;
       std::vector<std::shared_ptr<Link>> gone;
       std::vector<std::string> news;
@@ -98,15 +89,11 @@ struct Meeting::State {
         if (stopping) return;
         ++wake_ups;
         // New clients come last: a client that has spoken leaves its place to them.
-        const auto listening = std::stable_partition(events, events + count, [&](const auto& each) {
-          return !offers.contains(each.data.u64);
-        });
-        for (auto event = events; event != listening; ++event) {
-          handle(event->data.u64, admitted, gone);
-        }
-        for (auto event = listening; event != events + count; ++event) {
-          let_in(offers.at(event->data.u64));
-        }
+        const auto listening = std::ranges::stable_partition(
+            events, [&](const auto& each) { return !offers.contains(each.id); });
+        for (auto event = events.begin(); event != listening.begin(); ++event)
+          handle(event->id, admitted, gone);
+        for (const auto& event : listening) let_in(offers.at(event.id));
         expire();
         news = turned_away.take();
       }
@@ -116,22 +103,22 @@ struct Meeting::State {
     }
   }
 
-  // Milliseconds, or -1: until the next newcomer's time is over, or somebody may come in again.
-  int time_left() const {
+  // Until the next newcomer's time is over, or somebody may come in again; -1: for ever.
+  std::chrono::milliseconds time_left() const {
     std::lock_guard lock(mutex);
     auto next = closed_until;
     for (const auto& [id, newcomer] : newcomers) {
       if (!next || newcomer.deadline < *next) next = newcomer.deadline;
     }
-    if (!next) return -1;
+    if (!next) return std::chrono::milliseconds(-1);
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(*next - Clock::now());
-    return static_cast<int>(std::max<std::int64_t>(left.count(), 0));
+    return std::max(left, std::chrono::milliseconds(0));
   }
 
   void handle(std::uint64_t id, std::vector<Admitted>& admitted,
               std::vector<std::shared_ptr<Link>>& gone) {
     if (const auto node = newcomers.extract(id)) {
-      control_epoll(epoll, EPOLL_CTL_DEL, *node.mapped().socket, id, 0);
+      epoll.remove(*node.mapped().socket);
       hear(node.mapped(), admitted);
     } else if (auto link = watched.remove(id)) {
       gone.push_back(std::move(link));
@@ -144,10 +131,10 @@ struct Meeting::State {
     const std::size_t most = std::clamp<std::size_t>(room, 1, kAcceptedInARow);
     const bool served = skein::let_in(offer->socket.get(), most, [&](FileDescriptor& accepted) {
       const auto owner = other_end(accepted);
-      const std::uint64_t id = ++last_id;
+      std::uint64_t id = 0;
       if (owner && !knows(owner->uid)) turned_away.note_stranger(*owner);
       if (!owner || !knows(owner->uid) || newcomers.size() >= rules.newcomers ||
-          !control_epoll(epoll, EPOLL_CTL_ADD, accepted, id, EPOLLIN)) {
+          (id = epoll.add(accepted, EPOLLIN)) == 0) {
         ++refused;
         return;
       }
@@ -159,8 +146,7 @@ struct Meeting::State {
   }
 
   void let_nobody_in(std::chrono::milliseconds time) {
-    for (const auto& [id, offer] : offers)
-      control_epoll(epoll, EPOLL_CTL_MOD, offer->socket, id, 0);
+    for (const auto& [id, offer] : offers) epoll.change(offer->socket, id, 0);
     closed_until = Clock::now() + time;
   }
 
@@ -168,13 +154,12 @@ struct Meeting::State {
     const auto now = Clock::now();
     refused += std::erase_if(newcomers, [&](const auto& each) {
       if (each.second.deadline > now) return false;
-      control_epoll(epoll, EPOLL_CTL_DEL, *each.second.socket, each.first, 0);
+      epoll.remove(*each.second.socket);
       return true;
     });
     if (!closed_until || now < *closed_until) return;
     closed_until.reset();
-    for (const auto& [id, offer] : offers)
-      control_epoll(epoll, EPOLL_CTL_MOD, offer->socket, id, EPOLLIN);
+    for (const auto& [id, offer] : offers) epoll.change(offer->socket, id, EPOLLIN);
   }
 
   void hear(const Newcomer& newcomer, std::vector<Admitted>& admitted) {
@@ -188,7 +173,7 @@ struct Meeting::State {
       admit(newcomer, hello, std::move(doorbell), admitted);
     } catch (const Unavailable& why) {
       ++refused;
-      send_refusal(newcomer.socket->get(), make_packet<Answer>(), why.what());
+      send_refusal(newcomer.socket->get(), make_packet<JoinAnswer>(), why.what());
       let_nobody_in(kAfterRefusal);
     }
   }
@@ -215,7 +200,7 @@ struct Meeting::State {
     const auto link = std::make_shared<Link>(
         Link::Side::Provider, newcomer.socket, std::move(memory), std::move(doorbells),
         newcomer.offer->server, hello.client, newcomer.offer->notify);
-    watched.add(link, newcomer.process, last_id);
+    watched.add(link, newcomer.process);
     admitted.push_back({newcomer.offer, link, std::move(descriptor)});
   }
 
@@ -223,12 +208,9 @@ struct Meeting::State {
 
   void offer(std::shared_ptr<Offer> offer) {
     std::lock_guard lock(mutex);
-    const std::uint64_t id = ++last_id;
-    if (!offer->socket || !listen_at(offer->socket, address_of(offer->provider)) ||
-        !control_epoll(epoll, EPOLL_CTL_ADD, offer->socket, id,
-                       closed_until ? 0u : std::uint32_t{EPOLLIN})) {
-      refuse_to_meet();
-    }
+    if (!offer->socket || !listen_at(offer->socket, address_of(offer->provider))) refuse_to_meet();
+    const auto id = epoll.add(offer->socket, closed_until ? 0u : std::uint32_t{EPOLLIN});
+    if (id == 0) refuse_to_meet();
     offers.emplace(id, std::move(offer));
   }
 
@@ -240,11 +222,11 @@ struct Meeting::State {
           offers, [&](const auto& each) { return each.second->provider == provider; });
       if (found == offers.end()) return;
       withdrawn = found->second;
-      control_epoll(epoll, EPOLL_CTL_DEL, withdrawn->socket, found->first, 0);
+      epoll.remove(withdrawn->socket);
       offers.erase(found);
       std::erase_if(newcomers, [&](const auto& each) {
         if (each.second.offer != withdrawn) return false;
-        control_epoll(epoll, EPOLL_CTL_DEL, *each.second.socket, each.first, 0);
+        epoll.remove(*each.second.socket);
         return true;
       });
     }
@@ -256,7 +238,7 @@ struct Meeting::State {
     const auto known = [this](uid_t user) { return knows(user); };
     auto link = join_provider(provider, client, std::move(notify), known, rules.patience);
     std::lock_guard lock(mutex);
-    watched.add(link, std::nullopt, last_id);
+    watched.add(link, std::nullopt);
     return link;
   }
 };

@@ -1,24 +1,29 @@
 #include "watched_links.hpp"
 
 #include <algorithm>
-#include <utility>
+#include <cerrno>
+#include <cstring>
+#include <string>
 
 #include "core/system/other_process.hpp"
-#include "meeting_epoll.hpp"
+#include "skein/error.hpp"
 
 namespace skein::same_host {
 
-void WatchedLinks::add(const std::shared_ptr<Link>& link, std::optional<pid_t> guest,
-                       std::uint64_t& last_id) {
+void refuse_to_meet() {
+  throw Unavailable(std::string("cannot open the socket by which callers on this host come: ") +
+                    std::strerror(errno));
+}
+
+void WatchedLinks::add(const std::shared_ptr<Link>& link, std::optional<pid_t> guest) {
   const auto& socket = link->socket();
   auto added = std::make_shared<Watched>(
-      Watched{++last_id, socket, ++last_id, other_process(*socket).descriptor, link, guest});
-  if (!control_epoll(epoll_, EPOLL_CTL_ADD, *socket, added->id, EPOLLRDHUP)) refuse_to_meet();
-  if (added->process) {
-    control_epoll(epoll_, EPOLL_CTL_ADD, added->process, added->process_id, EPOLLIN);
-  }
+      Watched{0, socket, 0, other_process(*socket).descriptor, link, guest});
+  added->id = epoll_.add(*socket, EPOLLRDHUP);
+  if (added->id == 0) refuse_to_meet();
+  if (added->process) added->process_id = epoll_.add(added->process, EPOLLIN);
   links_.emplace(added->id, added);
-  links_.emplace(added->process_id, added);
+  if (added->process_id != 0) links_.emplace(added->process_id, added);
   if (guest) ++guests_;
 }
 
@@ -27,8 +32,8 @@ std::shared_ptr<Link> WatchedLinks::remove(std::uint64_t id) {
   if (found == links_.end()) return nullptr;
   const auto ended = found->second;
   // A copy of the descriptor, in a child, must not tell of it for ever.
-  control_epoll(epoll_, EPOLL_CTL_DEL, *ended->socket, ended->id, 0);
-  if (ended->process) control_epoll(epoll_, EPOLL_CTL_DEL, ended->process, ended->process_id, 0);
+  epoll_.remove(*ended->socket);
+  if (ended->process_id != 0) epoll_.remove(ended->process);
   links_.erase(ended->id);
   links_.erase(ended->process_id);
   if (ended->guest) --guests_;

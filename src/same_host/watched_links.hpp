@@ -7,22 +7,24 @@
 #include <optional>
 #include <unordered_map>
 
-#include "core/system/file_descriptor.hpp"
+#include "core/system/epoll.hpp"
 #include "link.hpp"
 
 namespace skein::same_host {
 
-/// Links whose end the kernel reports to an epoll: the socket hangs up, or the process at the other
-/// end ends, of which a child may keep the socket open. Not thread-safe.
+/// By errno: a meeting gets no descriptor, or none into its epoll.
+[[noreturn]] void refuse_to_meet();
+
+/// Watches links through an epoll for their end: the socket hangs up, or the process at the other
+/// end ends. A child of that process may keep the socket open. Not thread-safe.
 class WatchedLinks {
  public:
   /// `epoll` outlives it.
-  explicit WatchedLinks(const FileDescriptor& epoll) : epoll_(epoll) {}
+  explicit WatchedLinks(Epoll& epoll) : epoll_(epoll) {}
 
-  /// The link is known by two numbers of the epoll, the two after `last_id`. `guest`, if any, is
-  /// the process whose link it is. Throws Unavailable if the kernel refuses.
-  void add(const std::shared_ptr<Link>& link, std::optional<pid_t> guest, std::uint64_t& last_id);
-  /// The link that is known by this number has ended. Returns it if anybody uses it still; null
+  /// `guest`, if any, is the process of the client. Throws Unavailable if the kernel refuses.
+  void add(const std::shared_ptr<Link>& link, std::optional<pid_t> guest);
+  /// The link of the event with this number has ended. Returns it if anybody uses it still; null
   /// also for an unknown number.
   std::shared_ptr<Link> remove(std::uint64_t id);
 
@@ -34,13 +36,13 @@ class WatchedLinks {
   struct Watched {
     std::uint64_t id = 0;
     std::shared_ptr<const FileDescriptor> socket;
-    std::uint64_t process_id = 0;
+    std::uint64_t process_id = 0;  // 0: the kernel tells of no process
     FileDescriptor process;
     std::weak_ptr<Link> link;
     std::optional<pid_t> guest;
   };
 
-  const FileDescriptor& epoll_;
+  Epoll& epoll_;
   std::unordered_map<std::uint64_t, std::shared_ptr<const Watched>> links_;
   std::size_t guests_ = 0;
 };

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "test/tools/eventually.hpp"
+#include "test/tools/forked_copy.hpp"
 
 using namespace skein::brokerless_discovery;
 using skein::Epoll;
@@ -63,15 +64,9 @@ TEST_CASE("a hang-up is reported once, also if a forked child has a copy of the 
   Watchers watchers(epoll);
   auto [own, other] = connection();
   watchers.greet(own, getpid());
-  const pid_t child = fork();
-  REQUIRE(child >= 0);
-  if (child == 0) {
-    while (true) pause();
-  }
+  const skein::test::ForkedCopy child;
   shutdown(other.get(), SHUT_RDWR);  // the child has a copy of this end, too
   for (const auto& event : epoll.wait(skein::test::kPatience)) watchers.handle(event.id);
   CHECK(watchers.count() == 0);
   CHECK(epoll.wait(std::chrono::milliseconds(0)).empty());
-  kill(child, SIGKILL);
-  waitpid(child, nullptr, 0);
 }
