@@ -15,7 +15,7 @@
 
 namespace skein::brokerless_discovery {
 
-/// Puts what others tell of their services into the table. A new reader asks everybody for all
+/// Puts others' descriptions of their services into the table. A new reader asks everybody for all
 /// descriptions again (R17, R26). Its own lock is never taken by a listener. Thread-safe.
 class DescriptionReader {
  public:

@@ -44,7 +44,7 @@ class LockedTable {
     return changes;
   }
 
-  /// Returns what `look` returns for the table.
+  /// Returns the result of `look` for the table.
   template <class Look>
   auto look(Look look) const {
     std::lock_guard lock(mutex_);

@@ -6,6 +6,7 @@
 #include "brokerless_discovery/versions.hpp"
 #include "core/suggestion.hpp"
 #include "core/system/interface_name.hpp"
+#include "skein/constraint.hpp"
 #include "skein/discovery.idl.hpp"
 #include "skein/error.hpp"
 
@@ -40,11 +41,6 @@ constexpr std::string_view kLeaving = "skein:leaving";
 constexpr std::string_view kSharedMemoryCalls = "skein:shared_memory_calls";
 constexpr std::string_view kWithLoans = "loans";
 
-bool has_attribute(const ServiceDescription& description, std::string_view name) noexcept {
-  return std::any_of(description.attributes.begin(), description.attributes.end(),
-                     [&](const auto& attribute) { return attribute.name == name; });
-}
-
 bool is_own(const Entry& entry) { return entry.writer.is_nil(); }
 
 // R23.
@@ -64,7 +60,7 @@ void canonicalise(ServiceDescription& description) {
 }  // namespace
 
 bool is_leaving(const ServiceDescription& description) noexcept {
-  return has_attribute(description, kLeaving);
+  return find_attribute(description, kLeaving) != nullptr;
 }
 
 // Nobody finds it by its attributes any more, so they make room.
@@ -73,13 +69,12 @@ void mark_leaving(ServiceDescription& description) {
 }
 
 bool offers_shared_memory_calls(const ServiceDescription& description) noexcept {
-  return has_attribute(description, kSharedMemoryCalls);
+  return find_attribute(description, kSharedMemoryCalls) != nullptr;
 }
 
 bool takes_loans(const ServiceDescription& description) noexcept {
-  return std::ranges::any_of(description.attributes, [](const auto& attribute) {
-    return attribute.name == kSharedMemoryCalls && attribute.value == kWithLoans;
-  });
+  const std::string* const offer = find_attribute(description, kSharedMemoryCalls);
+  return offer && *offer == kWithLoans;
 }
 
 void offer_shared_memory_calls(ServiceDescription& description, bool with_loans) {

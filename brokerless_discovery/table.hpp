@@ -49,7 +49,7 @@ struct Query {
 
 /// Whether the provider says that it is about to leave (R28).
 bool is_leaving(const ServiceDescription& description) noexcept;
-/// Makes the description offer them, and loans if `with_loans`.
+/// Makes it say so, and drops its other attributes.
 void mark_leaving(ServiceDescription& description);
 
 /// Whether the provider says that peers of its host may call it through shared memory (R29).

@@ -30,7 +30,7 @@ class WatchedProcesses {
   void unwatch(const std::string& address, const void* watcher);
   void unwatch(const void* watcher);
 
-  /// Adds to `ended` what is to be run if a process has ended.
+  /// Adds to `ended` the actions that are due if a process has ended.
   void handle(const Epoll::Event& event, std::vector<Action>& ended);
 
   std::size_t count() const noexcept { return watched_.size(); }
@@ -55,7 +55,7 @@ class WatchedProcesses {
 
   Epoll& epoll_;
   std::unordered_map<std::string, Watched> watched_;
-  std::unordered_map<std::uint64_t, std::string> addresses_;  // by the number of what is polled
+  std::unordered_map<std::uint64_t, std::string> addresses_;  // by each polled number
 };
 
 }  // namespace skein::brokerless_discovery

@@ -10,7 +10,7 @@
 
 namespace skein {
 
-/// A large value that a provider in another process of this host may read where it lies. Passed as
+/// A large value that a provider in another process of this host may read in place. Passed as
 /// in `survey.store(*image)`, it reaches the provider unchanged, lent or copied; only the time
 /// differs. The fastest call is one that waits for its answer, with one such parameter of 4 KiB or
 /// more, through shared memory, to a provider in C++. Up to eight values of a connection can be
@@ -20,8 +20,8 @@ namespace skein {
 /// whether the provider may still read it. It may be destroyed at any time: readers keep the
 /// memory. Not thread-safe, as any value.
 ///
-/// T is an array or a struct of numbers and octets alone (see Lendable), so that whatever is
-/// written to it while it is read is a value, too. All are zero at first. Making one takes system
+/// T is an array or a struct of numbers and octets alone (see Lendable), so that any octets
+/// written to it while it is read are a value, too. All are zero at first. Making one takes system
 /// calls, and its pages are new to both processes: keep it for many calls.
 ///
 /// ```cpp

@@ -11,8 +11,8 @@
 
 namespace skein::introspection {
 
-/// Tells, on one of the topics about an entity, what a source has at each of its intervals,
-/// and only while somebody reads.
+/// Publishes the values of a source on one of the topics about an entity, at each of its intervals,
+/// and only while a reader is there.
 template <class T>
 class PeriodicTopic {
  public:

@@ -17,7 +17,7 @@ namespace skein::recording {
 
 struct RecorderOptions {
   std::vector<std::string> topics{};  ///< By name; empty: all that entities have.
-  bool introspection = true;          ///< Calls, with what they carry, and decisions of Heads.
+  bool introspection = true;          ///< Calls, with their values, and decisions of Heads.
   WriterOptions writer{};
   /// Once it says so, nobody is waited for any more; asked by look() and close() while they wait.
   std::function<bool()> gives_up{};

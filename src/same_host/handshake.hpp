@@ -11,8 +11,8 @@
 #include "skein/error.hpp"
 #include "skein/guid.hpp"
 
-/// What both sides of a new connection say to each other once; each is a packet, with which its
-/// sender's doorbell comes.
+/// The handshake of a new connection: a Hello from the client, a JoinAnswer from the provider. Each
+/// is a packet that carries its sender's doorbell; a refusal carries none.
 namespace skein::same_host {
 
 // A change of the memory's layout is another version.
@@ -23,10 +23,10 @@ struct Hello {
   Guid client;
 };
 
-struct Answer {
+struct JoinAnswer {
   char version[8];
   Guid server;
-  char refusal[104];  // empty where the memory comes with it, before the doorbell
+  char refusal[104];  // empty if the memory comes with it, before the doorbell
 };
 
 /// The abstract socket at which the provider's clients come.
@@ -54,7 +54,7 @@ bool receive_packet(int socket, Packet& packet, std::span<HandedOver> descriptor
   return receive_passed(socket, std::as_writable_bytes(std::span(&packet, 1)), descriptors);
 }
 
-inline void send_refusal(int socket, Answer answer, const char* why) {
+inline void send_refusal(int socket, JoinAnswer answer, const char* why) {
   std::strncpy(answer.refusal, why, sizeof answer.refusal - 1);
   send_packet(socket, answer);
 }

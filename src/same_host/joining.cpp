@@ -66,7 +66,7 @@ std::shared_ptr<Link> join_provider(const Guid& provider, const Guid& client,
     refuse_to_join(std::strerror(errno));
   }
   await_answer(socket->get(), patience);
-  Answer answer{};
+  JoinAnswer answer{};
   HandedOver handed[2];  // the memory, and the doorbell
   if (!receive_packet(socket->get(), answer, handed) || !has_our_version(answer)) {
     refuse_to_join("the provider turned it away");

@@ -10,13 +10,13 @@ namespace {
 // many turns; one that spins after so many looks.
 constexpr int kTurnsUnheard = 8;
 constexpr int kLooksUnheard = 16;
-// What is for a caller that does something else is taken back after so long, or twice that.
+// If a caller pauses this long, the leader takes back its messages; after twice that at most.
 constexpr std::chrono::milliseconds kPaused{20};
 
 }  // namespace
 
 void LedLinks::begin() {
-  wake_peers();  // those whom the thread that led before has let sleep
+  wake_peers();  // clients that the previous leader has let sleep
   if (turns_ > 0) listen();
 }
 
@@ -61,7 +61,7 @@ ReceivedLink::Looked LedLinks::look(Taker& taker) {
       all = looked;
       ++turns_;
     }
-    if (taker.sleepers.due()) taker.wake();  // also where no whole message has come
+    if (taker.sleepers.due()) taker.wake();  // even if no whole message has come
     i = after;
   }
   if (all == Looked::Something && turns_ >= kTurnsUnheard) listen();

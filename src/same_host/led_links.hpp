@@ -31,7 +31,7 @@ class LedLinks {
   void take_in(const Links& added);
   /// Takes some messages of each link that has some. Once replaced, this may be gone.
   ReceivedLink::Looked look(Taker& taker);
-  /// Attends links whose doorbells rang; whether any did.
+  /// Attends the links of doorbells that rang. Returns whether any rang.
   bool listen() { return attend_rung(std::chrono::milliseconds(0)); }
   /// Clients that have been let sleep.
   void wake_peers() const;

@@ -29,7 +29,7 @@ std::optional<std::span<const std::byte>> LinkReader::receive(Bytes& spare) {
   return std::nullopt;
 }
 
-// Nothing where a memory is gone: the message has told all.
+// Returns nullopt if the message only tells that a memory is gone.
 std::optional<calls::LentValue> LinkReader::borrow() {
   if (state_.side() != LinkState::Side::Provider) throw BrokenRing("a reply that lends");
   if (!borrower_) borrower_.emplace(state_.socket(), &state_.loans(), state_.memory());

@@ -16,7 +16,7 @@ namespace skein::same_host {
 /// ring(), all but take() are thread-safe.
 class LinkReader {
  public:
-  /// `state` is that of the link whose half it is.
+  /// `state` is that of the link to which this half belongs.
   explicit LinkReader(LinkState& state)
       : state_(state), ring_(state.incoming(), dds::kLargestSample) {}
 
@@ -25,7 +25,7 @@ class LinkReader {
   /// that has not come to its end keeps some. Throws BrokenRing; the link has ended then.
   std::optional<std::span<const std::byte>> receive(Bytes& spare);
   void release(Bytes& spare);
-  /// What the message has left out, as valid as it; or null.
+  /// The value that the message has left out, valid as long as the message; or null.
   const calls::LentValue* lent_value() const noexcept { return lent_ ? &*lent_ : nullptr; }
   /// Octets that have come of a message without its end.
   std::size_t unfinished() const noexcept { return unfinished_; }

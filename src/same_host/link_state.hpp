@@ -11,8 +11,8 @@
 
 namespace skein::same_host {
 
-/// What both halves of a link share: the memory, the socket that the kernel hangs up when the other
-/// process ends, whatever ends it, and whether the link has ended. Thread-safe.
+/// The state that both halves of a link share: the memory, the socket, and whether the link has
+/// ended. The kernel hangs up the socket when the other process ends, even by a crash. Thread-safe.
 class LinkState : public std::enable_shared_from_this<LinkState> {
  public:
   enum class Side { Provider, Client };
@@ -36,8 +36,8 @@ class LinkState : public std::enable_shared_from_this<LinkState> {
   const DoorbellPair& doorbells() const noexcept { return doorbells_; }
   const std::shared_ptr<const FileDescriptor>& socket() const noexcept { return socket_; }
 
-  /// Both sides learn of the end. Nothing more is sent; what the other side has sent before can
-  /// still be received. Twice is no error.
+  /// Both sides learn of the end. Nothing more is sent; messages that the other side sent before
+  /// can still be received. Twice is no error.
   void close();
   bool ended() const noexcept { return ended_; }
   /// The other side was found to damage the link.

@@ -76,7 +76,7 @@ bool LinkWriter::Answering::more_wait() const {
   return others_ || sleepers_.any() || requests_.ready();
 }
 
-// Under the lock. As the other side takes what comes only once it runs, it loses nothing but time.
+// Under the lock. The other side takes messages only once it runs: it loses nothing but time.
 bool LinkWriter::let_sleep() {
   return answering != nullptr && &answering->writer_ == this && answering->more_wait() &&
          ring_.reader_sleeps_here() && answering->sleepers_.add();
@@ -86,14 +86,14 @@ void LinkWriter::wake_peer(Wakes& wakes) {
   if (lets_sleep_ && lets_sleep_.exchange(false)) ring_.wake_reader(wakes);
 }
 
-// Where it would have to wait, the other side keeps the memory until another one takes its place.
+// If this would have to wait, the other side keeps the memory until another one takes its place.
 void LinkWriter::forget(const LoanNote& gone) {
   const std::unique_lock lock(mutex_, std::try_to_lock);
   if (!lock) return;
   try {
     write({std::as_bytes(std::span(&gone, 1)), true}, Duration::zero());
   } catch (const BrokenRing&) {
-    // Whoever uses the link next hears of it.
+    // The next use of the link finds that it has ended.
   }
 }
 
@@ -104,7 +104,7 @@ LinkWriter::Sent LinkWriter::write(RingWriter::Part message, const Patience& pat
   try {
     if (ring_.put(message)) {
       lets_sleep_ = message.lets_sleep;
-      // Who has gone on in this thread's place may have looked before: then it is seen here.
+      // A thread that has replaced this one may have looked before `lets_sleep_` was set.
       if (message.lets_sleep && answering->sleepers_.replaced()) {
         Wakes wakes;
         wake_peer(wakes);

@@ -21,7 +21,7 @@ class LinkWriter {
  public:
   enum class Sent { Yes, NoRoom, Ended };
 
-  /// `state` is that of the link whose half it is.
+  /// `state` is that of the link to which this half belongs.
   explicit LinkWriter(LinkState& state)
       : state_(state), ring_(state.outgoing(), state.doorbells().out) {}
 
@@ -44,20 +44,20 @@ class LinkWriter {
   /// Sends a message; NoRoom if the other side does not take enough in that time. A ring that is
   /// found broken ends the link; throws BrokenRing then.
   Sent send(std::span<const std::byte> message, const Patience& patience);
-  /// The same of one that has left out `value` at `position`, of a client's; nothing where the
-  /// other side cannot read it where it lies.
+  /// Like send(), but `message` leaves out `value` at `position`: it stays in the client's memory.
+  /// Returns nullopt on the provider's side, or if the provider cannot be given that memory now.
   std::optional<Sent> send_lending(std::span<const std::byte> message,
                                    const std::shared_ptr<LoanMemory>& value, std::size_t position,
                                    const Patience& patience);
-  /// Waits until the other side has taken everything; false at the deadline and at the end, also
-  /// where the ring is found broken.
+  /// Waits until the other side has taken everything. Returns false at the deadline, when the link
+  /// ends, and if the ring is found broken.
   bool await_taken(Instant deadline);
   /// The link has ended: a thread that waits here goes on.
   void note_end() { ring_.wake(); }
 
-  /// While it exists, what this thread sends are answers to what comes in by `requests`, the link's
-  /// other ring. The other side, if it sleeps on this core, becomes one of `sleepers` where there
-  /// are some, or more requests wait: of this link, or `others`'. Then wake_peer() follows.
+  /// While it exists, this thread's messages answer requests of `requests`, the link's other ring.
+  /// If the other side sleeps on this core, it may join `sleepers`: if there are some already, or
+  /// if more requests wait, of this link or of others (`others`). Then wake_peer() follows.
   class Answering {
    public:
     Answering(const LinkWriter& writer, const RingReader& requests, Sleepers& sleepers,
@@ -76,7 +76,7 @@ class LinkWriter {
     const bool others_;
     const Answering* const outer_;
   };
-  /// Wakes the other side, where it was let sleep, by the end of `wakes`. From any thread.
+  /// If the other side was let sleep, wakes it by the end of `wakes`. From any thread.
   void wake_peer(Wakes& wakes);
 
  private:

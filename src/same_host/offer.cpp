@@ -8,7 +8,7 @@ namespace skein::same_host {
 void Offer::welcome(const std::shared_ptr<Link>& link, const FileDescriptor& memory) {
   std::lock_guard lock(mutex_);
   const int client = link->socket()->get();
-  auto answer = make_packet<Answer>();
+  auto answer = make_packet<JoinAnswer>();
   answer.server = server;
   try {
     if (withdrawn_) throw Unavailable("the service has been withdrawn");

@@ -14,12 +14,12 @@ namespace {
 
 // Then the others have their turn.
 constexpr int kMessagesInARow = 16;
-// More than a ring holds: who goes on after the end is not listened to.
+// More turns than a full ring takes: a peer that writes on after the end is not listened to.
 constexpr int kTurnsAfterEnd = 2048;
 // The other side can make a caller miss that its own side wakes it, for so long at most.
 constexpr std::chrono::milliseconds kMissed{50};
 
-/// A turn whose link is locked.
+/// A turn during which the link is locked, until leave().
 class OwnTurn final : public calls::Turn {
  public:
   OwnTurn(Taker& taker, Link& link, Bytes& spare, std::unique_lock<std::mutex>& lock)
@@ -96,7 +96,7 @@ void ReceivedLink::sleep(const std::function<bool()>& done) {
   if (!come) {
     sleeps_ = true;
     const bool idle = in.prepare_to_sleep(RingReader::Who::Caller);
-    // The other side may write to this word, and so undo what wake() has done.
+    // The other side may write to this word, and so undo the effect of wake().
     if (idle && !called_ && !over_) {
       futex_wait_for(in.word(RingReader::Who::Caller), 1, kMissed);
     }
@@ -111,7 +111,7 @@ ReceivedLink::Looked ReceivedLink::look(Bytes& spare, Taker& taker) {
   std::unique_lock lock(mutex_);
   if (over_) return Looked::Nothing;
   if (!begun_.exchange(true)) inbox.on_begin(*link);
-  const bool ended = link->ended();  // looked at first: what came before the end is taken
+  const bool ended = link->ended();  // read first: messages from before the end are taken
   int taken = 0;
   try {
     for (; taken < kMessagesInARow; ++taken) {
@@ -136,7 +136,7 @@ ReceivedLink::Looked ReceivedLink::look(Bytes& spare, Taker& taker) {
     inbox.on_end(*link);
     link->ending().run();
     unfinished_->change(std::exchange(octets_, 0), 0);
-    over_ = true;  // from now on the receiver may be gone, where this is a caller
+    over_ = true;  // from now on the receiver may be gone, if a caller runs this
     wake();
     news_->tell_of_changes();
   }

@@ -19,8 +19,8 @@
 
 namespace skein::same_host {
 
-/// Who gets what comes through links. Called on the receiver's thread, or a caller's, one at a time
-/// for each link but for who has left his turn; must return soon, or leave it.
+/// Gets messages of links. Called on the receiver's thread or a caller's: one call at a time for
+/// each link, apart from calls that have left their turn. A call returns soon or leaves its turn.
 class Inbox {
  public:
   virtual ~Inbox() = default;
@@ -83,13 +83,15 @@ struct Taker {
   const Who who;
   Lead* const lead = nullptr;  ///< None of a caller, which lets nobody sleep, either.
   const std::function<void()> wake_peers;
-  std::uint64_t left = 0;  ///< Not 0: this one's is left, and what Lead::leave() has said.
+  std::uint64_t left = 0;  ///< Not 0: the turn is left; the token of Lead::leave().
   Sleepers sleepers{[this] { return left != 0 && !lead->is_left(left); }};
-  bool others_wait = false;  ///< Whether links have something whose turn comes after this one.
+  bool others_wait = false;  ///< Whether links that come after this one have something.
 };
 
-/// One link of a receiver: takes what it brings, by the thread that leads or by a caller that waits
-/// for it. Once it is over, the inbox and the receiver may be gone. Thread-safe.
+/// One link of a receiver: takes its messages on the thread that leads, or on a caller's that waits
+/// for one. Once it is over, the inbox and the receiver may be gone. Thread-safe but for
+/// `attended` and `pauses_seen`, which belong to the thread that leads; one caller uses it at a
+/// time.
 class ReceivedLink final : public calls::CallerDelivery {
  public:
   enum class Looked { Nothing, Something, Replaced };
@@ -107,7 +109,7 @@ class ReceivedLink final : public calls::CallerDelivery {
   void lend() override;
   void pause() override;
   void take_back() override;
-  // Who unwound from it would leave the call's result to be written where it was.
+  // noexcept: an exception would unwind the frame to which the call's result is written later.
   void deliver_until(const std::function<bool()>& done) noexcept override;
   void wake() override;
 
@@ -118,7 +120,7 @@ class ReceivedLink final : public calls::CallerDelivery {
   }
   /// Takes some messages. Replaced: one of them left the turn, and another thread leads by now.
   Looked look(Bytes& spare, Taker& taker);
-  /// The inbox gets nothing more, but for what has left its turn.
+  /// The inbox gets nothing more, apart from a call that has left its turn and still runs.
   void remove();
   /// Nobody need wait for it any more.
   bool over() const { return over_; }

@@ -7,7 +7,7 @@
 namespace skein::same_host {
 
 /// Whether it pays to look for the next message for a while before sleeping: it does while most
-/// came soon. Costs nothing once they come late.
+/// came soon. It spins no more once they come late.
 class SpinPolicy {
  public:
   /// `limit`: how long to look at most; 0: never.

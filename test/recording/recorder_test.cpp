@@ -453,7 +453,7 @@ TEST_CASE("nothing of calls is copied while nobody records") {
   CHECK(recording::Reader(recorded.file).channels().empty());
 }
 
-TEST_CASE("each of Skein's own topics that is to be recorded has a channel") {
+TEST_CASE("of Skein's own topics those that are to be recorded have a channel") {
   Recorded recorded;
   recorded.begin();
   const auto channels = recorded.recorder->statistics().channels;
@@ -461,7 +461,8 @@ TEST_CASE("each of Skein's own topics that is to be recorded has a channel") {
     CAPTURE(topic.name);
     const auto count =
         std::ranges::count(channels, topic.name, &recording::ChannelStatistics::topic);
-    if (topic.recorded) CHECK(count == 1);
+    const bool apart = topic.name == introspection::kTopic<introspection::CallRecords>.name;
+    CHECK(count == (topic.recorded || apart ? 1 : 0));
   });
 }
 

@@ -17,7 +17,7 @@ namespace skein::command {
 /// `result`, which must outlive `app`.
 void make_command_line(CLI::App& app, int& result);
 
-/// What adds a subcommand, with its help, to `app`.
+/// Adds a subcommand, with its help, to `app`.
 using AddCommand = void (*)(CLI::App& app, int& result);
 
 /// The subcommands of a file, in the order in which help lists them.

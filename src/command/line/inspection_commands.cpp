@@ -67,7 +67,7 @@ void add_decisions(CLI::App& app, int& result) {
 }
 const SubcommandRow kDecisionsRow(inspection_commands, add_decisions);
 
-/// Where a command serves, and the token of its URL.
+/// The port at which a command serves, and the token of its URL.
 void add_server(CLI::App& command, std::uint16_t& port, std::string& token, const char* variable) {
   command.add_option("--port", port, "TCP port on loopback; 0 takes any that is free")
       ->type_name("PORT")

@@ -2,6 +2,8 @@
 
 #include <sys/types.h>
 
+// Which users' processes may connect to this process's sockets: LocalServer (local_server.hpp) and
+// Meeting (src/same_host) ask these.
 namespace skein {
 
 /// Whether the kernel shows every user by this number whom this process's user namespace does not

@@ -11,9 +11,9 @@
 
 namespace skein::dds::fastdds {
 
-/// Follows other participants' silence: ends one whose lease has run out, tells readers of writers
+/// Watches for participants' silence: ends one when its lease runs out, tells readers of writers
 /// that are not alive, and forgets all participants after a sleep of this one. Judges on the
-/// thread of `events`, by what FastLeaseWatch has heard.
+/// thread of `events`, by the signs of life that FastLeaseWatch has noted.
 class FastSilence {
  public:
   using Time = FastLeaseWatch::Time;

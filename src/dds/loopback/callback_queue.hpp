@@ -13,7 +13,7 @@
 
 namespace skein::dds::loopback {
 
-/// The callbacks of a network, in the order of what they tell. One runs at a time, outside the
+/// The callbacks of a network, in the order of their events. One runs at a time, outside the
 /// network's lock; members are called with it held.
 class CallbackQueue {
  public:

@@ -27,7 +27,7 @@ struct Message {
 };
 using MessagePtr = std::shared_ptr<const Message>;
 
-/// What one participant knows of another.
+/// The knowledge that one participant has of another.
 struct View {
   bool heard = false;            // its announcements arrive
   bool known = false;            // found, and its lease has not expired
@@ -50,7 +50,7 @@ struct EndpointCore {
   Topic topic;
   Qos qos;
   bool closed = false;
-  std::set<Guid> refused;  // whose incompatibility has been told
+  std::set<Guid> refused;  // peers that have been reported as incompatible
 };
 
 /// Whether one endpoint belongs to each of the two participants.
@@ -66,7 +66,7 @@ struct WriterCore final : EndpointCore {
   WriterCore(const Qos& qos, Hub& hub);
   WriterListener listener;
   std::uint64_t last_sequence = 0;
-  KeyedQueue<MessagePtr> history;  // for late joiners, where the writer is transient-local
+  KeyedQueue<MessagePtr> history;  // for late joiners, if the writer is transient-local
   const std::unique_ptr<DeadlineTimer> deadline;
 };
 

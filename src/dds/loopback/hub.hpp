@@ -63,7 +63,7 @@ class Hub : public std::enable_shared_from_this<Hub> {
   HubState state_;
   Transfers transfers_;
   Matching matching_;
-  LeaseWatch lease_watch_;
+  LoopbackLeaseWatch lease_watch_;
 };
 
 }  // namespace skein::dds::loopback

@@ -19,18 +19,18 @@ struct Match {
   bool writer_side = false;
   bool reader_side = false;
   bool alive = true;
-  bool repeating = false;  // a timer will repeat what was lost
+  bool repeating = false;  // a timer will repeat lost samples
   std::uint64_t delivered = 0;
   Unacknowledged pending{};  // reliable only
 };
 
 using MatchId = std::pair<Guid, Guid>;  // writer, reader
 
-/// What the hub's parts share, under its lock.
+/// The state that the hub's parts share, under its lock.
 struct HubState {
   /// Runs the action after the delay, under the lock, and then the callbacks.
   const std::function<void(Duration delay, std::function<void()> action)> later;
-  std::condition_variable acknowledged{};  // notified when fewer samples wait for this
+  std::condition_variable acknowledged{};  // notified when samples are, or given up
   Topology topology{};
   std::map<MatchId, Match> matches{};
   CallbackQueue callbacks{};

@@ -2,7 +2,7 @@
 
 namespace skein::dds::loopback {
 
-void LeaseWatch::update_presence() {
+void LoopbackLeaseWatch::update_presence() {
   for (const auto& [observer_guid, observer] : state_.topology.participants()) {
     if (observer->paused || observer->killed) continue;
     for (const auto& [observed_guid, observed] : state_.topology.participants()) {
@@ -15,7 +15,7 @@ void LeaseWatch::update_presence() {
   }
 }
 
-void LeaseWatch::say_goodbye(const Guid& participant) {
+void LoopbackLeaseWatch::say_goodbye(const Guid& participant) {
   for (const auto& [guid, other] : state_.topology.participants()) {
     const auto view = other->views.find(participant);
     if (view == other->views.end() || !view->second.heard) continue;
@@ -24,8 +24,8 @@ void LeaseWatch::say_goodbye(const Guid& participant) {
   }
 }
 
-void LeaseWatch::hear(ParticipantCore& observer, const std::shared_ptr<ParticipantCore>& observed,
-                      View& view) {
+void LoopbackLeaseWatch::hear(ParticipantCore& observer,
+                              const std::shared_ptr<ParticipantCore>& observed, View& view) {
   view.heard = true;
   ++view.generation;
   if (!view.known) {
@@ -43,8 +43,8 @@ void LeaseWatch::hear(ParticipantCore& observer, const std::shared_ptr<Participa
   transfers_.repeat_between(observer, *observed);
 }
 
-void LeaseWatch::lose_sound(const ParticipantCore& observer, const ParticipantCore& observed,
-                            View& view) {
+void LoopbackLeaseWatch::lose_sound(const ParticipantCore& observer,
+                                    const ParticipantCore& observed, View& view) {
   view.heard = false;
   const std::uint64_t generation = ++view.generation;
   for (const auto& [id, match] : state_.matches) {
@@ -61,8 +61,8 @@ void LeaseWatch::lose_sound(const ParticipantCore& observer, const ParticipantCo
                });
 }
 
-bool LeaseWatch::still_silent(const Guid& observer, const Guid& observed,
-                              std::uint64_t generation) {
+bool LoopbackLeaseWatch::still_silent(const Guid& observer, const Guid& observed,
+                                      std::uint64_t generation) {
   const auto found = state_.topology.participants().find(observer);
   if (found == state_.topology.participants().end() || found->second->killed) return false;
   ParticipantCore& participant = *found->second;
@@ -73,7 +73,7 @@ bool LeaseWatch::still_silent(const Guid& observer, const Guid& observed,
   return !participant.paused;
 }
 
-void LeaseWatch::expire_liveliness(const MatchId& id, std::uint64_t generation) {
+void LoopbackLeaseWatch::expire_liveliness(const MatchId& id, std::uint64_t generation) {
   const auto found = state_.matches.find(id);
   if (found == state_.matches.end() || !found->second.reader_side || !found->second.alive) return;
   Match& match = found->second;
@@ -86,7 +86,7 @@ void LeaseWatch::expire_liveliness(const MatchId& id, std::uint64_t generation) 
 }
 
 /// The observer drops all that it knows of the observed.
-void LeaseWatch::forget(ParticipantCore& observer, const Guid& observed) {
+void LoopbackLeaseWatch::forget(ParticipantCore& observer, const Guid& observed) {
   View& view = observer.views[observed];
   if (!view.known) return;
   matching_.unmatch_all(observer, observed);
@@ -94,8 +94,8 @@ void LeaseWatch::forget(ParticipantCore& observer, const Guid& observed) {
   tell_presence(observer, observed, false);
 }
 
-void LeaseWatch::tell_presence(const ParticipantCore& observer, const Guid& observed,
-                               bool present) {
+void LoopbackLeaseWatch::tell_presence(const ParticipantCore& observer, const Guid& observed,
+                                       bool present) {
   if (!observer.options.on_participant) return;
   state_.callbacks.post(&observer, [tell = observer.options.on_participant, observed, present] {
     tell(observed, present);

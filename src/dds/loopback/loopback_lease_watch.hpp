@@ -6,14 +6,14 @@ namespace skein::dds::loopback {
 
 /// Which participants hear and know each other: follows the topology, and forgets a participant
 /// after its lease.
-class LeaseWatch {
+class LoopbackLeaseWatch {
  public:
-  LeaseWatch(HubState& state, Matching& matching, Transfers& transfers)
+  LoopbackLeaseWatch(HubState& state, Matching& matching, Transfers& transfers)
       : state_(state), matching_(matching), transfers_(transfers) {}
 
-  /// Follows every change of who can hear whom. A paused observer notices nothing until it resumes.
+  /// Follows each change of the topology. A paused observer notices nothing until it resumes.
   void update_presence();
-  /// A goodbye reaches those who can hear it; the others wait for the lease.
+  /// The goodbye reaches participants that hear this one; the others wait for the lease.
   void say_goodbye(const Guid& participant);
 
  private:

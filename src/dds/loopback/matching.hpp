@@ -8,7 +8,7 @@
 
 namespace skein::dds::loopback {
 
-/// Which writers and readers are matched, by what their participants know of each other.
+/// Matches writers and readers, if their participants know of each other.
 class Matching {
  public:
   Matching(HubState& state, Transfers& transfers) : state_(state), transfers_(transfers) {}

@@ -3,7 +3,7 @@
 namespace skein::dds::loopback {
 namespace {
 
-/// What all readers of a message share.
+/// Keeps a message alive for all readers that share it.
 struct MessageHolder {
   MessagePtr message;
   std::shared_ptr<const void> keep() const { return message; }
@@ -111,7 +111,7 @@ void Transfers::arrive(const MatchId& id, const MessagePtr& message) {
   }
 }
 
-/// Drops what was overtaken or has been delivered.
+/// Drops a message that was overtaken or has been delivered.
 void Transfers::accept(Match& match, const MessagePtr& message) {
   if (message->sequence <= match.delivered) return;
   ReaderCore& reader = *match.reader;

@@ -17,7 +17,7 @@ class Transfers {
   void judge_by(std::function<Fate(const Transfer&)> judge) { judge_ = std::move(judge); }
 
   void write(WriterCore& writer, const std::shared_ptr<Message>& message);
-  /// Sends what the writer keeps for late joiners and the reader has not got.
+  /// Sends the samples that the writer keeps for late joiners and the reader has not got.
   void replay_history(Match& match);
   void repeat_between(const ParticipantCore& one, const ParticipantCore& other);
   /// The writer waits for this reader no longer.

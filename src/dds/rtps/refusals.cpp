@@ -57,7 +57,7 @@ std::string to_text(std::uint32_t address) {
 void Refusals::count(Refusal why, unsigned char kind, std::uint32_t source) {
   const auto so_far =
       counts_[static_cast<std::size_t>(why)].fetch_add(1, std::memory_order_relaxed) + 1;
-  // Who has just found somebody speaks to him before the announcement has come.
+  // A peer that has just found this participant speaks to it before its own announcement arrives.
   if (why == Refusal::Stranger || !is_told(so_far)) return;
   char what[32] = "message";
   if (kind != 0) std::snprintf(what, sizeof what, "submessage (0x%02x)", kind);

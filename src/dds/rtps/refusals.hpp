@@ -11,8 +11,8 @@
 
 namespace skein::dds {
 
-/// How often something was refused, by the reason; the first of each, the tenth, the hundredth and
-/// so on is a warning in the log. Thread-safe.
+/// How often something was refused, by the reason. The first of each but Stranger, the tenth, the
+/// hundredth and so on is a warning in the log. Thread-safe.
 class Refusals {
  public:
   /// `place` is the log's word for the source of its lines.

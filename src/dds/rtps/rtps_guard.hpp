@@ -2,8 +2,8 @@
 
 #include <chrono>
 #include <mutex>
-#include <optional>
 #include <string>
+#include <vector>
 
 #include "dds/port/allowed_sources.hpp"
 #include "packet_admission.hpp"
@@ -21,9 +21,7 @@ class RtpsGuard {
  public:
   using Clock = Admission::Clock;
 
-  using Refusal = dds::Refusal;
-
-  /// `place` is where the log says that something was refused.
+  /// `place` is the log's word for the source of lines about refusals.
   RtpsGuard(Addresses addresses, std::string place, SkippedNumbers skipped)
       : addresses_(std::move(addresses)), refusals_(std::move(place)), admission_(skipped) {}
 

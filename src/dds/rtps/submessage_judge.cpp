@@ -135,7 +135,7 @@ SubmessageJudge::Verdict SubmessageJudge::judge_data(const Submessage& submessag
     const std::uint32_t writer = entity_at(found->writer);
     if (const auto verdict = admission_.may_wait(origin, writer, found->number)) return verdict;
   }
-  // A farewell may come from who was never found.
+  // A farewell may come from a participant that was never found.
   if (service == Service::Participants && !admission_.knows(origin)) return kSound;
   return admission_.sample(origin, entity_at(found->writer), found->number);
 }

@@ -8,8 +8,8 @@
 
 namespace skein::dds {
 
-/// Decides whether a submessage may be handed on: by its form, its kind, and by what was received
-/// of its sender before. May change what the submessage says into something as true and smaller.
+/// Decides whether a submessage may be handed on: by its form, its kind, and earlier messages of
+/// its sender. May replace a statement of the submessage by one that is as true and claims less.
 /// Reads no clock and takes no lock. Not thread-safe.
 class SubmessageJudge {
  public:
@@ -20,8 +20,8 @@ class SubmessageJudge {
   SubmessageJudge(const Addresses& addresses, Admission& admission)
       : addresses_(addresses), admission_(admission) {}
 
-  /// The verdict on a submessage whose sender does not matter (PAD, INFO_TS, INFO_DST); no verdict
-  /// on other kinds, which judge() takes.
+  /// The verdict on a kind for which the sender does not matter (PAD, INFO_TS, INFO_DST). Returns
+  /// nullopt for other kinds, which judge() takes.
   static std::optional<Verdict> judge_form(const rtps_message::Submessage& submessage);
 
   /// The verdict on a submessage of any other kind.

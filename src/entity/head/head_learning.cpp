@@ -46,7 +46,7 @@ void HeadLearning::predict(const InterfaceInfo& interface, const Features& featu
 }
 
 void HeadLearning::add(const InterfaceInfo& interface, const Candidate& candidate,
-                       const std::shared_ptr<const Features>& features, const Ending& ending) {
+                       const std::shared_ptr<const Features>& features, const RunEnding& ending) {
   if (ending.own) return;
   const bool overran = ending.expected > Duration::zero() && ending.took > ending.expected;
   const bool late =

@@ -11,8 +11,8 @@
 
 namespace skein::entity {
 
-/// What a Head has learned about its CSPs from past requests: its History, which a thread of its
-/// own learns from. Thread-safe.
+/// A Head's experience with its CSPs: the History of past requests, and a thread of its own that
+/// learns from it. Thread-safe.
 class HeadLearning {
  public:
   /// Reads the history from `file` if it exists; empty: no file. Throws if it cannot be
@@ -25,9 +25,9 @@ class HeadLearning {
   PastDecisions begin_request(std::string_view interface);
   void predict(const InterfaceInfo& interface, const Features& features,
                std::vector<Candidate>& candidates) const;
-  /// What came of a run, unless that says nothing about the CSP's time.
+  /// Adds the outcome of a run, unless that says nothing about the CSP's time.
   void add(const InterfaceInfo& interface, const Candidate& candidate,
-           const std::shared_ptr<const Features>& features, const Ending& ending);
+           const std::shared_ptr<const Features>& features, const RunEnding& ending);
   /// Begins to learn on the other thread if it is time to.
   void end_request(const std::string& interface, bool explored);
 

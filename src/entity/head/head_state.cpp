@@ -72,7 +72,7 @@ bool Head::State::await_change(const InterfaceInfo& interface, const entity::Los
 
 void Head::State::end(const InterfaceInfo& interface, const Candidate& candidate,
                       const std::shared_ptr<const Features>& features, std::uint64_t run,
-                      const entity::Ending& ending) {
+                      const entity::RunEnding& ending) {
   const bool timed_out = ending.outcome == introspection::Outcome::TimedOut;
   const bool is_told = timed_out && ending.fault && ending.expected > Duration::zero() &&
                        !candidate.in_process && options.on_hang;

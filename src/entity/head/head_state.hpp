@@ -14,7 +14,7 @@
 
 namespace skein {
 
-/// What a Head holds from one request to the next: each part has its own lock. Thread-safe.
+/// The state that a Head keeps across requests: each part has its own lock. Thread-safe.
 struct Head::State {
   State(const Parts& parts, HeadOptions options);
 
@@ -29,10 +29,10 @@ struct Head::State {
   bool await_change(const InterfaceInfo& interface, const entity::LostCsps& lost,
                     std::uint64_t seen, Instant deadline) const;
 
-  /// Tells all parts what came of a run, and HeadOptions::on_hang if the CSP hangs.
+  /// Tells all parts how a run ended, and HeadOptions::on_hang if the CSP hangs.
   void end(const InterfaceInfo& interface, const Candidate& candidate,
            const std::shared_ptr<const Features>& features, std::uint64_t run,
-           const entity::Ending& ending);
+           const entity::RunEnding& ending);
   /// Runs `decide()`, which fills the record, and keeps that, also if it throws. `wanted` gets a
   /// copy unless it is null.
   template <class Decide>

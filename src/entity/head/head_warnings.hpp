@@ -13,8 +13,8 @@
 
 namespace skein::entity {
 
-/// What a Head logs about its CSPs once, and not at each request. Thread-safe. A thread that holds
-/// the lock of another part may call it.
+/// Logs a Head's warnings about its CSPs once, and not at each request. Thread-safe. A thread that
+/// holds the lock of another part may call it.
 class HeadWarnings {
  public:
   explicit HeadWarnings(std::string entity) : entity_(std::move(entity)) {}

@@ -25,7 +25,7 @@ using brokerless_discovery::ServiceDescription;
 
 namespace {
 
-// What others declare may be any number; as far as any task is concerned, this is for ever.
+// A CSP may declare any number; as far as any task is concerned, this is for ever.
 constexpr double kLongestLatencySeconds = 365.0 * 24 * 3600;
 
 // A plain number is in milliseconds, the dictionary's unit.
@@ -63,7 +63,7 @@ bool KnownCsps::Known::hangs() const {
   return instance && instance->overdue();
 }
 
-// Under the lock. Of what was given to this entity and is never a candidate, each once.
+// Under the lock. Warns once of each CSP that this entity was given and that is never a candidate.
 void KnownCsps::tell_unusable(brokerless_discovery::Query query, std::size_t usable) {
   const InterfaceInfo& interface = *query.client;
   query.client = nullptr;

@@ -25,7 +25,7 @@ class KnownCsps {
   /// entered again before it has returned. `only`: as TaskOptions::only.
   std::vector<Candidate> find(const InterfaceInfo& interface, const std::string& only);
 
-  /// Where a CSP lives; null if it has just left.
+  /// The host of a CSP; null if it has just left.
   std::shared_ptr<const std::string> host_of(const InterfaceInfo& interface,
                                              const Guid& provider) const;
 

@@ -14,11 +14,11 @@
 
 namespace skein::entity {
 
-/// Logs and counts the CSPs in this process that do not return from requests whose time is over.
+/// Logs and counts CSPs in this process that do not return although their request's time is over.
 /// Thread-safe.
 class OverdueCsps {
  public:
-  /// What a provider in this process does.
+  /// Asks about a provider in this process.
   struct Providers {
     std::function<bool(const Guid&)> is_overdue;
     /// Whether blocking calls run on their callers' threads.

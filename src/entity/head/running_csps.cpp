@@ -40,7 +40,7 @@ std::optional<std::uint64_t> RunningCsps::begin(const InterfaceInfo& interface,
 }
 
 void RunningCsps::end(const InterfaceInfo& interface, const Candidate& candidate, std::uint64_t run,
-                      const Ending& ending, bool hangs) {
+                      const RunEnding& ending, bool hangs) {
   std::lock_guard lock(mutex_);
   std::erase_if(running_, [&](const Running& each) { return each.run == run; });
   CircuitBreaker& breaker = this->breaker(interface.name, candidate.name);

@@ -16,8 +16,8 @@
 
 namespace skein::entity {
 
-/// What came of a run of a CSP.
-struct Ending {
+/// How a run of a CSP ended.
+struct RunEnding {
   introspection::Outcome outcome;
   Duration took;
   Duration expected;  ///< As Selection::expected.
@@ -49,7 +49,7 @@ class RunningCsps {
   /// Ends the run. A fault counts against the CSP; one that `hangs` is quarantined at its first.
   /// Logs the beginning of a quarantine.
   void end(const InterfaceInfo& interface, const Candidate& candidate, std::uint64_t run,
-           const Ending& ending, bool hangs);
+           const RunEnding& ending, bool hangs);
 
   std::vector<Head::Current> list() const;
 

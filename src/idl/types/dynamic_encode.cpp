@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <numeric>
 #include <set>
+#include <span>
 
 #include "dynamic_codec.hpp"
 #include "primitive_kind.hpp"

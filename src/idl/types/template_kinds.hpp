@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstddef>
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -17,7 +16,7 @@ struct TemplateKind {
   std::string_view keyword{};  ///< Of IDL, before `<`; empty if IDL writes the type otherwise.
   std::size_t types = 0;       ///< So many it takes.
   bool holds_all = false;      ///< Whether a value always contains one of each of them.
-  std::string_view object{};   ///< What its object in JSON is, for messages.
+  std::string_view object{};   ///< The word for its object in JSON, for messages.
   std::array<std::string_view, 2> names{};  ///< Of that object's members.
 };
 

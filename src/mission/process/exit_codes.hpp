@@ -18,7 +18,7 @@ inline constexpr int kConfigurationError = 78;
 inline constexpr int kNoAnswer = 124;
 inline constexpr int kInterrupted = 128;  ///< Plus the signal's number.
 
-/// The kinds of commands whose help lists exit codes.
+/// The kinds of commands that list exit codes in their help.
 struct CommandKind {
   std::string_view name;
 };

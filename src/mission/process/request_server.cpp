@@ -37,7 +37,7 @@ bool hear_client(int client, std::string& request, const RequestServer::Answer& 
   if (!complete || end > kLongest) return true;
   if (has_gone(client)) return true;  // nobody is to be surprised later
   const std::string text = answer(std::string_view(request).substr(0, end));
-  // A client that does not read gets what its socket holds.
+  // A client that does not read gets as much as its socket holds.
   [[maybe_unused]] const auto sent = ::send(client, text.data(), text.size(), MSG_NOSIGNAL);
   return true;
 }

@@ -13,8 +13,8 @@
 namespace skein::launch {
 
 /// Answers requests of one line that come over a Unix socket: from processes of this user and of
-/// root alone, a few at a time, and of bounded length. It never waits: whoever calls it polls its
-/// descriptor. A request whose client has gone is not carried out.
+/// root alone, a few at a time, and of bounded length. It never waits: its owner polls its
+/// descriptor. A request is not carried out if its client has gone.
 class RequestServer {
  public:
   static constexpr std::size_t kMostClients = 8;
@@ -31,7 +31,7 @@ class RequestServer {
   /// Readable if serve() has something to do.
   int descriptor() const noexcept { return epoll_.descriptor(); }
 
-  /// Takes new clients and answers those whose request has come. Returns when to call it again
+  /// Takes new clients and answers complete requests. Returns when to call it again
   /// even if nothing comes, if it accepts nobody for a while.
   std::optional<Time> serve(Time now, const Answer& answer);
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kCpus = "process_cpus";
 
-/// What the launcher obeys, like kProcessAttributes; skein peer obeys the rest.
+/// Obeyed by the launcher, like kProcessAttributes; skein peer obeys the rest.
 constexpr std::array<std::string_view, 6> kOfPrograms{"system",  "host",  "component",
                                                       "program", "ready", kCpus};
 

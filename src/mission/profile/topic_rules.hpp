@@ -9,7 +9,7 @@
 
 namespace skein::profile {
 
-/// What a profile says of a topic's QoS, in place of what the code says.
+/// A topic's QoS as a profile sets it, in place of the code's.
 struct TopicRules {
   std::string name;
   /// Stands at an element around the peer, for peers that may not all have the topic.

@@ -10,7 +10,7 @@
 
 namespace skein::rpc {
 
-/// What a service tells of its calls: to its meters, to the journal, to the recorder. Thread-safe.
+/// Reports a service's calls to its meters, to the journal, to the recorder. Thread-safe.
 struct CallAccounts {
   const InterfaceInfo& interface;
   const std::shared_ptr<CallJournal> journal;    ///< May be null.

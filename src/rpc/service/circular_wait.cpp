@@ -11,7 +11,7 @@
 namespace skein::rpc {
 namespace {
 
-// From where the chain first enters this service, back to it.
+// Names the chain from its first entry into this service, back to it.
 std::string circle(const std::vector<Guid>& chain, const Guid& entered, const ServiceOwner& owner) {
   std::string text;
   const auto first = std::find(chain.begin(), chain.end(), entered);

@@ -46,8 +46,8 @@ struct AnyTopic {
 template <class T>
 struct Topic : AnyTopic {};
 
-/// What each entity tells of itself; the types are those of introspection.idl. Who records, views
-/// or imitates entities goes by this table.
+/// The topics on which each entity tells of itself, with the types of introspection.idl. Tools that
+/// record, view or imitate entities go by this table.
 inline constexpr std::tuple kTopics{
     Topic<CallEvents>{{.name = "skein/calls",
                        .type_name = "skein::introspection::CallEvents",

@@ -23,25 +23,25 @@ namespace skein::rpc {
 /// One request as the provider sees it, from whichever transport. It owns its arguments.
 struct Invocation {
   const OperationInfo* operation = nullptr;
-  /// Keeps what parameters refer to where they were not copied.
+  /// Keeps the memory that parameters refer to, if they were not copied.
   std::shared_ptr<const void> lent;
   /// The in struct; freed by the operation's own TypeSupport.
   std::unique_ptr<void, void (*)(void*)> in{nullptr, [](void*) {}};
   Guid caller;
-  Guid connection;           ///< With whose other invocations it waits in line.
+  Guid connection;           ///< Waits in line with this connection's other invocations.
   std::uint64_t number = 0;  ///< The connection's own count.
   Instant arrived;
   Instant begun;  ///< When the implementation was called.
   Instant ended;  ///< When the implementation had returned or thrown.
   Instant deadline;
-  std::vector<Guid> chain;  ///< Who waits for the answer, as the request says.
-  /// The call on whose thread, and for which, this one runs; null where it has a thread of its own.
+  std::vector<Guid> chain;  ///< The services that wait for the answer, as the request says.
+  /// The call on this thread that makes this one; null if there is none.
   const CallContext* outer = nullptr;
   std::shared_ptr<Session> session;
   std::atomic<bool> cancelled{false};
-  /// Where the results go, where the operation is a stream.
+  /// Takes the results if the operation is a stream.
   std::shared_ptr<OutgoingStream> stream;
-  /// Called once, on the thread that executes it: the out struct, or what was thrown; neither at
+  /// Called once, on the thread that ends it: the out struct, or the exception; neither at
   /// the end of a stream.
   std::function<void(const void* out, std::exception_ptr error)> respond;
   std::shared_ptr<Invocation> next;  ///< The FairQueue's.

@@ -75,7 +75,7 @@ inline std::vector<std::shared_ptr<PendingReply>> OwedAnswers::close() {
   std::lock_guard lock(mutex_);
   closed_ = true;
   for (PendingReply* const each : owed_) {
-    // One whose last copy goes just now waits for the lock in remove().
+    // One that loses its last copy just now waits for the lock in remove().
     if (auto alive = each->weak_from_this().lock()) owed.push_back(std::move(alive));
   }
   return owed;

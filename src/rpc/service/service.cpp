@@ -55,12 +55,12 @@ void Service::submit(const std::shared_ptr<Invocation>& invocation,
   OperationMeter& meter = accounts_.received(operation, *invocation);
   if (operation.stream) stream_submitted_ = true;
   std::optional<CallerTurns::Turn> turn;
-  // What waits in the queue has come earlier, from the same client perhaps. After a long call
-  // everything queues first that has come meanwhile: some of it may be cancelled by what comes
-  // next.
+  // Queued calls came earlier, perhaps from the same client, and go first. After a long call all
+  // calls that have come meanwhile are queued first: a message behind them may cancel some of
+  // them.
   if (may_run && Reception::is_of(*this) && !operation.stream && !answered_later &&
       calls_.none_accepted() && !execution_.latest_was_long()) {
-    turn.emplace(caller_turns_.get(), Instant::min());  // who would have to wait for it queues
+    turn.emplace(caller_turns_.get(), Instant::min());  // if the turn is taken, the call queues
   }
   bool here = false;
   try {
@@ -72,8 +72,8 @@ void Service::submit(const std::shared_ptr<Invocation>& invocation,
     accounts_.ended(operation, *invocation, std::current_exception());
     throw;
   }
-  // What is thrown there ends the process on the executor's thread, too; on this one it would be
-  // told to who may be gone.
+  // An exception there ends the process on the executor's thread, too; on this one it would be
+  // reported to a client that may be gone.
   if (here) return [&]() noexcept { execution_.run(invocation, true, invocation->arrived); }();
   // Unlocked: on one processor the thread that it wakes runs at once, and needs the lock. The
   // executor ends after close(), which leaves nothing in the queue.

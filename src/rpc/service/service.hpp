@@ -8,10 +8,10 @@
 #include <string>
 
 #include "rpc/service/call_accounts.hpp"
+#include "rpc/service/call_execution.hpp"
 #include "rpc/service/call_intake.hpp"
 #include "rpc/service/caller_turns.hpp"
 #include "rpc/service/circular_wait.hpp"
-#include "rpc/service/execution.hpp"
 #include "rpc/service/owed_answers.hpp"
 #include "rpc/service/service_owner.hpp"
 #include "rpc/service/unfinished_calls.hpp"
@@ -65,8 +65,8 @@ class Service : public std::enable_shared_from_this<Service> {
   /// Whether it is about to leave, or has left, also after it is gone: new calls go elsewhere.
   std::shared_ptr<const std::atomic<bool>> leaving() const noexcept { return leaving_; }
 
-  /// A session for a new client (nullptr where the service has no Head). Throws Unavailable once
-  /// the service is closed.
+  /// A session for a new client (nullptr where the service has no Head). Throws NotSent once the
+  /// service is about to leave.
   std::shared_ptr<Session> open(const OpenRequest& request) const {
     return owner_.open(request, interface_info().name);
   }
@@ -127,7 +127,7 @@ class Service : public std::enable_shared_from_this<Service> {
   OwedAnswers owed_;
   CallIntake intake_;
   const std::unique_ptr<CallerTurns> caller_turns_;  // with CallThread::Caller
-  Execution execution_;
+  CallExecution execution_;
   std::atomic<bool> stream_submitted_{false};
 };
 

@@ -14,12 +14,12 @@
 
 namespace skein::rpc {
 
-/// What a call or a client gets that comes to a service too late.
+/// The error for a call or a client that comes to a service too late.
 inline NotSent being_withdrawn(std::string_view service) {
   return NotSent(std::string(service) + " is being withdrawn");
 }
 
-/// What a client asks for when it connects: the paper's `initialize()`.
+/// A client's request when it connects: the paper's `initialize()`.
 struct OpenRequest {
   Guid client;           ///< Nil for a client in the same process.
   std::string strategy;  ///< Selection strategy by name; empty means the provider's default.
@@ -28,11 +28,11 @@ struct OpenRequest {
 /// Makes a Head's session for a new client; throws Error to refuse it.
 using SessionFactory = std::function<std::shared_ptr<Session>(const OpenRequest&)>;
 
-/// What a service asks its owner, as long as the owner is there: close() waits for each question.
+/// Asks a service's owner, as long as the owner is there: close() waits for each question.
 /// Thread-safe.
 class ServiceOwner {
  public:
-  /// What people call a strand; empty if they call it nothing.
+  /// The name that people know a strand by; empty if it has none.
   using NameOf = std::function<std::string(const Guid& strand)>;
 
   /// Both may be empty. close() sets `leaving`.

@@ -329,7 +329,7 @@ TEST_CASE("of a ready process that dies the launcher says in which thread, and i
   CHECK_THAT(run.output(),
              Contains("office | skein: dies of signal 6 in its thread 'office'\n") &&
                  Contains("(last it said: dies of signal 6 in its thread 'office')") &&
-                 Contains("(abort+0x") && Contains("skein::rpc::Execution::"));
+                 Contains("(abort+0x") && Contains("skein::rpc::CallExecution::"));
 }
 
 TEST_CASE("a parameter that is set, and that no code has asked for, is told at the end") {

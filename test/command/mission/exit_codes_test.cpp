@@ -1,4 +1,4 @@
-// The table of exit codes: for each of its rows a command that ends with it.
+// The table of exit codes: for each code a command that ends with it.
 #include "mission/process/exit_codes.hpp"
 
 #include <array>

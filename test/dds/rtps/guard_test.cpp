@@ -12,9 +12,9 @@ using namespace skein;
 using namespace skein::test;
 using namespace skein::test::guard_stage;
 using dds::Admission;
+using dds::Refusal;
 using dds::RtpsGuard;
 using dds::SkippedNumbers;
-using Refusal = RtpsGuard::Refusal;
 using namespace std::chrono_literals;
 
 TEST_CASE_METHOD(Stage, "a message that is no RTPS of version 2, or has no sender, is refused") {

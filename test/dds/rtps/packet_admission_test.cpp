@@ -8,9 +8,9 @@ using namespace skein;
 using namespace skein::test;
 using namespace skein::test::guard_stage;
 using dds::Admission;
+using dds::Refusal;
 using dds::RtpsGuard;
 using dds::SkippedNumbers;
-using Refusal = RtpsGuard::Refusal;
 using namespace std::chrono_literals;
 
 TEST_CASE_METHOD(Stage, "a heartbeat that leaps by 2^52 is refused, of a writer known or unknown") {

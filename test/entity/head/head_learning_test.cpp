@@ -4,7 +4,7 @@
 
 using namespace skein;
 using namespace std::chrono_literals;
-using entity::Ending;
+using entity::RunEnding;
 using introspection::Outcome;
 
 namespace {
@@ -18,7 +18,7 @@ struct Learning {
   Learning() { candidates[0].name = "worker"; }
 
   /// Whether the history has a prediction for the CSP after a run that ended so.
-  bool learns_from(const Ending& ending) {
+  bool learns_from(const RunEnding& ending) {
     learning.add(interface, candidates[0], features, ending);
     learning.predict(interface, *features, candidates);
     return candidates[0].learned.has_value();
@@ -28,19 +28,20 @@ struct Learning {
 }  // namespace
 
 TEST_CASE_METHOD(Learning, "a Head learns from each run that shows how long a CSP takes") {
-  CHECK(learns_from(GENERATE(Ending{.outcome = Outcome::Accepted, .took = 1ms},
-                             Ending{.outcome = Outcome::Rejected, .took = 1ms},
-                             Ending{.outcome = Outcome::TimedOut, .took = 1ms},
-                             // It was late when another one's result was enough.
-                             Ending{.outcome = Outcome::Cancelled, .took = 3ms, .expected = 2ms})));
+  CHECK(learns_from(
+      GENERATE(RunEnding{.outcome = Outcome::Accepted, .took = 1ms},
+               RunEnding{.outcome = Outcome::Rejected, .took = 1ms},
+               RunEnding{.outcome = Outcome::TimedOut, .took = 1ms},
+               // It was late when another one's result was enough.
+               RunEnding{.outcome = Outcome::Cancelled, .took = 3ms, .expected = 2ms})));
 }
 
 TEST_CASE_METHOD(Learning, "a Head learns nothing from a run that was not the CSP's to end") {
   CHECK_FALSE(
-      learns_from(GENERATE(Ending{.outcome = Outcome::Cancelled, .took = 1ms, .expected = 2ms},
-                           Ending{.outcome = Outcome::Cancelled, .took = 1ms},
+      learns_from(GENERATE(RunEnding{.outcome = Outcome::Cancelled, .took = 1ms, .expected = 2ms},
+                           RunEnding{.outcome = Outcome::Cancelled, .took = 1ms},
                            // The task's own function threw.
-                           Ending{.outcome = Outcome::Failed, .took = 1ms, .own = true})));
+                           RunEnding{.outcome = Outcome::Failed, .took = 1ms, .own = true})));
 }
 
 TEST_CASE_METHOD(Learning, "requests and explorations are counted by interface") {

@@ -6,7 +6,7 @@
 
 using namespace skein;
 using namespace std::chrono_literals;
-using entity::Ending;
+using entity::RunEnding;
 using introspection::Outcome;
 using State = CircuitBreaker::State;
 
@@ -32,15 +32,15 @@ struct RunningStage {
                          clock.now());
   }
 
-  void end(const Candidate& candidate, std::uint64_t run, const Ending& ending,
+  void end(const Candidate& candidate, std::uint64_t run, const RunEnding& ending,
            bool hangs = false) {
     running.end(interface, candidate, run, ending, hangs);
   }
 };
 
-const Ending kFault{.outcome = Outcome::Failed, .fault = true, .reason = "a bug"};
-const Ending kSuccess{.outcome = Outcome::Accepted};
-const Ending kCancelled{.outcome = Outcome::Cancelled};
+const RunEnding kFault{.outcome = Outcome::Failed, .fault = true, .reason = "a bug"};
+const RunEnding kSuccess{.outcome = Outcome::Accepted};
+const RunEnding kCancelled{.outcome = Outcome::Cancelled};
 
 }  // namespace
 
@@ -69,7 +69,7 @@ TEST_CASE_METHOD(RunningStage, "a quarantine is logged when it begins, once for 
   const test::Log log;
   const auto fail = [&](const std::string& reason) {
     const Candidate candidate = listed("patient");
-    Ending ending = kFault;
+    RunEnding ending = kFault;
     ending.reason = reason;
     end(candidate, begin(candidate).value(), ending);
   };

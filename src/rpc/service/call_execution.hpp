@@ -17,9 +17,9 @@ namespace skein::rpc {
 
 class Service;
 
-/// Runs a service's invocations, on the thread that calls it, and answers them: within the
-/// operation, result by result, or later. Thread-safe.
-class Execution {
+/// Runs a service's invocations on the thread that calls it; answers at once, later or as a stream.
+/// Which thread: service.hpp's submit(), call_here() and Options::thread say. Thread-safe.
+class CallExecution {
  public:
   /// All outlive it.
   struct Parts {
@@ -34,7 +34,7 @@ class Execution {
     std::function<bool()> others_wait;  ///< For the thread; a stream asks it under its lock.
   };
 
-  explicit Execution(Parts parts) : parts_(std::move(parts)) {}
+  explicit CallExecution(Parts parts) : parts_(std::move(parts)) {}
 
   /// Whether the implementation may answer after it has returned.
   bool answers_later(const OperationInfo& operation) const noexcept;
@@ -48,8 +48,8 @@ class Execution {
   /// Runs the operation and answers nobody: the outcome is in `out` or thrown.
   void call(const OperationInfo& operation, const void* in, void* out, Invocation& frame);
 
-  /// Throws TimedOut if it ended after its deadline: what an implementation returns, or gives up,
-  /// because it saw its deadline pass is no result.
+  /// Throws TimedOut if it ended after its deadline: an implementation that saw its deadline pass
+  /// may have given up, or returned a part, and that is no result.
   void refuse_too_late(const OperationInfo& operation, const Invocation& frame) const;
 
   /// Answers one that was not run: the service is being withdrawn.

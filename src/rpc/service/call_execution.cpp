@@ -1,4 +1,4 @@
-#include "rpc/service/execution.hpp"
+#include "rpc/service/call_execution.hpp"
 
 #include <chrono>
 #include <string>
@@ -20,11 +20,11 @@ constexpr std::chrono::milliseconds kLong{1};
 
 }  // namespace
 
-/// A call that its implementation answers later. It outlives the service where the implementation
+/// A call that its implementation answers later. It outlives the service if the implementation
 /// keeps it for longer, and refers to it weakly: the service has the implementation.
-class Execution::Deferred final : public PendingReply {
+class CallExecution::Deferred final : public PendingReply {
  public:
-  Deferred(Execution& execution, const std::shared_ptr<Invocation>& invocation)
+  Deferred(CallExecution& execution, const std::shared_ptr<Invocation>& invocation)
       : service_(execution.parts_.service.weak_from_this()),
         execution_(execution),
         name_(execution.parts_.accounts.interface.name),
@@ -77,7 +77,7 @@ class Execution::Deferred final : public PendingReply {
   enum class Ending { None, Answered, Withdrawn };
 
   const std::weak_ptr<Service> service_;
-  Execution& execution_;  // the service's
+  CallExecution& execution_;  // the service's
   const std::string_view name_;
   const std::shared_ptr<const void> keeps_;  // the clock of call_
   const std::shared_ptr<Invocation> invocation_;
@@ -87,11 +87,12 @@ class Execution::Deferred final : public PendingReply {
   std::atomic<Ending> ending_{Ending::None};
 };
 
-bool Execution::answers_later(const OperationInfo& operation) const noexcept {
+bool CallExecution::answers_later(const OperationInfo& operation) const noexcept {
   return parts_.servant.answers_later() && !operation.stream && !operation.oneway;
 }
 
-void Execution::run(const std::shared_ptr<Invocation>& invocation, bool turn_came, Instant now) {
+void CallExecution::run(const std::shared_ptr<Invocation>& invocation, bool turn_came,
+                        Instant now) {
   OperationMeter& meter = parts_.accounts.meter.of(*invocation->operation);
   invocation->begun = now;
   meter.waited.record(now - invocation->arrived);
@@ -108,7 +109,7 @@ void Execution::run(const std::shared_ptr<Invocation>& invocation, bool turn_cam
   run_now(*invocation);
 }
 
-void Execution::run_now(Invocation& invocation) {
+void CallExecution::run_now(Invocation& invocation) {
   const TypeSupport& type = *invocation.operation->out;
   OutgoingStream* const stream = invocation.stream.get();
   if (stream) stream->set_others_wait(parts_.others_wait);
@@ -131,13 +132,13 @@ void Execution::run_now(Invocation& invocation) {
   answer(invocation, result, std::move(error));
 }
 
-void Execution::withdraw(Invocation& invocation) {
+void CallExecution::withdraw(Invocation& invocation) {
   OperationMeter::count(parts_.accounts.meter.of(*invocation.operation).refused);
   answer(invocation, nullptr,
          std::make_exception_ptr(being_withdrawn(parts_.accounts.interface.name)));
 }
 
-void Execution::withdraw_owed() {
+void CallExecution::withdraw_owed() {
   for (const auto& each : parts_.owed.close()) {
     auto& deferred = static_cast<Deferred&>(*each);
     deferred.withdraw(std::make_exception_ptr(
@@ -146,18 +147,19 @@ void Execution::withdraw_owed() {
   }
 }
 
-void Execution::answer(Invocation& invocation, const void* out, std::exception_ptr error) {
+void CallExecution::answer(Invocation& invocation, const void* out, std::exception_ptr error) {
   parts_.accounts.ended(*invocation.operation, invocation, error);
   invocation.respond(out, std::move(error));
 }
 
-void Execution::refuse_too_late(const OperationInfo& operation, const Invocation& frame) const {
+void CallExecution::refuse_too_late(const OperationInfo& operation, const Invocation& frame) const {
   if (frame.ended < frame.deadline) return;
   throw TimedOut(std::string(parts_.accounts.interface.name) + " finished " + quoted(operation) +
                  " too late");
 }
 
-void Execution::call(const OperationInfo& operation, const void* in, void* out, Invocation& frame) {
+void CallExecution::call(const OperationInfo& operation, const void* in, void* out,
+                         Invocation& frame) {
   enter(operation, frame, [&] {
     CallRecorder::Tap tap = parts_.accounts.tap(operation, frame, in);
     account(operation, out, frame, tap,
@@ -165,9 +167,9 @@ void Execution::call(const OperationInfo& operation, const void* in, void* out, 
   });
 }
 
-// Runs `action`, which is inside the implementation; refuses where the service is closed.
+// Runs `action`, which is inside the implementation; refuses if the service is closed.
 template <class Action>
-void Execution::enter(const OperationInfo& operation, Invocation& frame, Action action) {
+void CallExecution::enter(const OperationInfo& operation, Invocation& frame, Action action) {
   const CallContext context(parts_.clock, frame.deadline, frame.caller,
                             {frame.outer, frame.chain, parts_.strand}, frame.session.get(),
                             &frame.cancelled);
@@ -182,8 +184,8 @@ void Execution::enter(const OperationInfo& operation, Invocation& frame, Action 
 
 // Runs `action`, which ends the call: meters and recorder hear how.
 template <class Action>
-void Execution::account(const OperationInfo& operation, const void* out, Invocation& frame,
-                        CallRecorder::Tap& tap, Action action) {
+void CallExecution::account(const OperationInfo& operation, const void* out, Invocation& frame,
+                            CallRecorder::Tap& tap, Action action) {
   OperationMeter& meter = parts_.accounts.meter.of(operation);
   OperationMeter::Counter* outcome = &meter.answered;
   const auto end = [&] {
@@ -214,8 +216,8 @@ void Execution::account(const OperationInfo& operation, const void* out, Invocat
   tap.returned(out);
 }
 
-// The implementation may answer before it returns, and what it does then is nobody's concern.
-void Execution::run_deferred(const std::shared_ptr<Invocation>& invocation) {
+// The implementation may answer before it returns; an exception after that is only logged.
+void CallExecution::run_deferred(const std::shared_ptr<Invocation>& invocation) {
   try {
     enter(*invocation->operation, *invocation, [&] {
       const auto deferred = make_shared_in_call_memory<Deferred>(*this, invocation);
@@ -235,7 +237,7 @@ void Execution::run_deferred(const std::shared_ptr<Invocation>& invocation) {
   }
 }
 
-void Execution::end(Deferred& deferred, std::exception_ptr error) {
+void CallExecution::end(Deferred& deferred, std::exception_ptr error) {
   Invocation& invocation = deferred.invocation();
   const OperationInfo& operation = *invocation.operation;
   invocation.on_cancel(nullptr);
