@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/log.hpp"
+#include "rpc/service/service.hpp"
 #include "rpc/wire/reply_encoding.hpp"
 #include "skein/error.hpp"
 
