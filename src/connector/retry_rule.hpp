@@ -21,7 +21,7 @@ struct Asked {
 /// for a caller that waits, WaitingCall and RetryingCall for all other and for hedged calls.
 ///
 /// - Not sent: the connection ended before. The call is made elsewhere at once, repeatable or not,
-///   unless the client's own side has ended.
+///   unless the client's own side has ended; FailoverChannel itself decides that.
 /// - Sent, and not repeatable: its outcome is the answer, also if that is a failure.
 /// - Sent, and repeatable: admit() after a failure, hedge() while the first provider is slow.
 /// - No provider stands that may be asked: the call waits for one until its deadline, unless a

@@ -48,7 +48,7 @@ Clients clients_in(std::vector<Inspected>&& answers) {
   return clients;
 }
 
-void print_service(const Client& client) {
+void print_client(const Client& client) {
   const inspection::Connection& connection = client.connection;
   std::printf("    from %s: %s, %llu calls%s%s\n", printable(client.name).c_str(),
               printable(connection.transport).c_str(),
@@ -57,7 +57,7 @@ void print_service(const Client& client) {
               printable(connection.not_faster).c_str());
 }
 
-nlohmann::ordered_json json_of_service(const Client& client) {
+nlohmann::ordered_json json_of_client(const Client& client) {
   return {{"client", client.name},
           {"transport", client.connection.transport},
           {"not_faster", client.connection.not_faster},
@@ -65,7 +65,7 @@ nlohmann::ordered_json json_of_service(const Client& client) {
           {"calls", client.connection.calls}};
 }
 
-void print_service(const introspection::ServiceStatistics& service) {
+void print_service_statistics(const introspection::ServiceStatistics& service) {
   std::printf("%-40s %s/%s  waiting %u  running %u\n", printable(service.service).c_str(),
               printable(service.system).c_str(), printable(service.entity).c_str(), service.waiting,
               service.running);
@@ -95,9 +95,9 @@ nlohmann::ordered_json json_of_service(const discovery::ServiceDescription& serv
 void print_statistics(const std::vector<introspection::ServiceStatistics>& services,
                       const Clients& clients) {
   for (const auto& service : services) {
-    print_service(service);
+    print_service_statistics(service);
     const auto [first, last] = clients.equal_range(Guid{service.provider});
-    for (auto client = first; client != last; ++client) print_service(client->second);
+    for (auto client = first; client != last; ++client) print_client(client->second);
   }
 }
 
@@ -109,13 +109,14 @@ void print_statistics_as_json(const std::vector<introspection::ServiceStatistics
     json["connections"] = nlohmann::ordered_json::array();
     const auto [first, last] = clients.equal_range(Guid{service.provider});
     for (auto client = first; client != last; ++client) {
-      json["connections"].push_back(json_of_service(client->second));
+      json["connections"].push_back(json_of_client(client->second));
     }
   }
   print_json(list, true);
 }
 
-void print_service(const brokerless_discovery::Table::Found& services, const std::string& place) {
+void print_service_list(const brokerless_discovery::Table::Found& services,
+                        const std::string& place) {
   for (const auto& service : services) {
     std::printf("%-40s %s/%s  pid %u  %s\n", printable(service->service).c_str(),
                 printable(service->system).c_str(), printable(service->entity).c_str(),
@@ -156,7 +157,7 @@ int list_services(const ServicesArguments& arguments) {
   }
   const auto services = entity.broker().all();
   arguments.json ? print_as_json(services)
-                 : print_service(services, entity.broker().options().place);
+                 : print_service_list(services, entity.broker().options().place);
   if (services.empty()) tell_missions_elsewhere(arguments);
   return 0;
 }

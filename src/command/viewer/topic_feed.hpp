@@ -16,8 +16,9 @@
 
 namespace skein::command {
 
-/// Topics of a domain as channels of a server. Each is read while somebody watches its channel, and
-/// not before. Used by one thread.
+/// Topics of a domain as channels of a server. serve_view() (view.cpp) asks all entities which
+/// topics there are. Each is read while somebody watches its channel, and not before. Used by one
+/// thread.
 class TopicFeed {
  public:
   /// All outlive it.

@@ -15,9 +15,9 @@
 
 namespace skein {
 
-/// Listens at names of the abstract namespace, and accepts clients of trusted users. All other
-/// clients are turned away, and closed by a thread for which nobody waits. After that, or if the
-/// kernel has no descriptor, the server accepts nobody for a while: neither strangers nor a
+/// Listens at names of the abstract namespace, and accepts the clients that its owner trusts. All
+/// other clients are turned away, and closed by a thread for which nobody waits. After that, or if
+/// the kernel has no descriptor, the server accepts nobody for a while: neither strangers nor a
 /// shortage keep its thread busy. It has no thread, lock or clock; its owner passes events and the
 /// time.
 class LocalServer {

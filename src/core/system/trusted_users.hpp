@@ -2,8 +2,8 @@
 
 #include <sys/types.h>
 
-// Which users' processes may connect to this process's sockets: LocalServer (local_server.hpp) and
-// Meeting (src/same_host) ask these.
+// By these a socket's owner decides who may connect: RequestServer lets in this user and root,
+// ProcessWatch this user alone, and Meeting the users of its rules.
 namespace skein {
 
 /// Whether the kernel shows every user by this number whom this process's user namespace does not

@@ -4,7 +4,7 @@
 
 #include "attributes.hpp"
 #include "fast_identity.hpp"
-#include "participant_leases.hpp"
+#include "put_off_leases.hpp"
 
 namespace skein::dds::fastdds {
 

@@ -12,12 +12,13 @@
 
 namespace skein::dds::fastdds {
 
-/// When participants were last heard of: the base of their leases and of automatic liveliness.
+/// Decides when a participant has not been heard of for its lease (watch()), and whether its
+/// writers count as alive (alive()).
 ///
 /// Fast DDS supervises both itself, and crashes: the timer of its readers' liveliness walks the
 /// list of local readers without a lock, and the timer of a participant's lease works on a proxy
 /// that a receiving thread is just clearing or using again. So no reader tells Fast DDS of a lease,
-/// the leases of participants are put off before it reads them (participant_leases.hpp), and what
+/// the leases of participants are put off before it reads them (put_off_leases.hpp), and what
 /// the transport receives is watched here instead.
 ///
 /// Time counts only while it is watched: a pause between two calls of watch() that is much longer

@@ -6,12 +6,12 @@ namespace skein::dds::fastdds {
 
 FastSilence::FastSilence(StartupTransportDescriptor::State& transport, EventThread& events)
     : transport_(transport), events_(events) {
-  transport_.watch.on_wake = [this] { events_.post([this] { forget_all(); }); };
+  transport_.suspend.on_wake = [this] { events_.post([this] { forget_all(); }); };
 }
 
 void FastSilence::follow(const Guid& participant, std::optional<std::chrono::nanoseconds> lease,
                          Time now) {
-  transport_.signs.follow(participant, lease, now);
+  transport_.lease_watch.follow(participant, lease, now);
   if (lease) check_each(*lease);
 }
 
@@ -47,7 +47,7 @@ void FastSilence::check_leases(Time now) {
     std::lock_guard lock(mutex_);
     period = period_;
   }
-  for (const Guid& gone : transport_.signs.watch(now, period)) {
+  for (const Guid& gone : transport_.lease_watch.watch(now, period)) {
     transport_.discovery.say_farewell(gone);
   }
 }
@@ -63,14 +63,15 @@ void FastSilence::check_liveliness(Time now) {
     const auto reader = each.reader.lock();
     if (!reader) continue;
     for (const Guid& writer : reader->peers()) {
-      reader->alive(writer, transport_.signs.alive(writer.participant(), each.lease, now));
+      reader->alive(writer, transport_.lease_watch.alive(writer.participant(), each.lease, now));
     }
   }
 }
 
 void FastSilence::forget_all() {
-  for (const Guid& each : transport_.signs.drop_all()) transport_.discovery.say_farewell(each);
-  transport_.watch.awake(std::chrono::steady_clock::now());
+  for (const Guid& each : transport_.lease_watch.drop_all())
+    transport_.discovery.say_farewell(each);
+  transport_.suspend.awake(std::chrono::steady_clock::now());
 }
 
 }  // namespace skein::dds::fastdds

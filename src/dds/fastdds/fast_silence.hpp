@@ -11,9 +11,9 @@
 
 namespace skein::dds::fastdds {
 
-/// Watches for participants' silence: ends one when its lease runs out, tells readers of writers
-/// that are not alive, and forgets all participants after a sleep of this one. Judges on the
-/// thread of `events`, by the signs of life that FastLeaseWatch has noted.
+/// Asks FastLeaseWatch which participants are silent, on the thread of `events`, and carries it
+/// out: ends them, tells readers of writers that are not alive, and forgets all participants after
+/// a sleep of this one.
 class FastSilence {
  public:
   using Time = FastLeaseWatch::Time;
@@ -23,7 +23,7 @@ class FastSilence {
 
   /// A participant has been found, or announces another lease; or it has gone.
   void follow(const Guid& participant, std::optional<std::chrono::nanoseconds> lease, Time now);
-  void forget(const Guid& participant) { transport_.signs.forget(participant); }
+  void forget(const Guid& participant) { transport_.lease_watch.forget(participant); }
 
   /// Tells a reader of the liveliness of the writers that it is matched with, until it closes.
   void watch_liveliness(std::weak_ptr<EndpointEvents> reader, std::chrono::nanoseconds lease);

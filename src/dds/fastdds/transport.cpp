@@ -1,7 +1,7 @@
 #include "transport.hpp"
 
 #include "announced_representation.hpp"
-#include "participant_leases.hpp"
+#include "put_off_leases.hpp"
 
 namespace skein::dds::fastdds {
 namespace {
@@ -47,7 +47,7 @@ class StartupTransport final : public eprosima::fastdds::rtps::ChainingTransport
     // "Sent" although dropped: a failure would only be logged.
     if (!descriptor_.state->open.load(std::memory_order_relaxed)) return true;
     const auto now = std::chrono::steady_clock::now();
-    if (!descriptor_.state->watch.may_send(now)) return true;
+    if (!descriptor_.state->suspend.may_send(now)) return true;
     descriptor_.state->guard.sent(message, size);
     std::optional<std::int64_t> number;
     for_each_submessage(const_cast<rtps::octet*>(message), size, [&](const Submessage& submessage) {
@@ -71,14 +71,14 @@ class StartupTransport final : public eprosima::fastdds::rtps::ChainingTransport
                const rtps::octet* message, std::uint32_t size, const rtps::Locator_t& local,
                const rtps::Locator_t& remote) override {
     const auto now = std::chrono::steady_clock::now();
-    if (!descriptor_.state->watch.may_receive(now)) return;
+    if (!descriptor_.state->suspend.may_receive(now)) return;
     // The buffer is the receiving socket's own, which nobody reads before `next`.
     auto* writable = const_cast<rtps::octet*>(message);
     const RtpsGuard::Passed passed =
         descriptor_.state->guard.pass(writable, size, address_of(remote), now);
     if (passed.size == 0) return;
     const auto length = static_cast<std::uint32_t>(passed.size);
-    const bool just_returned = descriptor_.state->signs.heard(sender(message), now);
+    const bool just_returned = descriptor_.state->lease_watch.heard(sender(message), now);
     if (passed.acknowledges) repair_.repair(writable, length, just_returned);
     if (passed.announces) {
       put_off_leases(writable, length);

@@ -74,13 +74,13 @@ struct StartupTransportDescriptor : eprosima::fastdds::rtps::ChainingTransportDe
   struct State {
     State(std::chrono::nanoseconds lease, std::chrono::nanoseconds announcement_period,
           Addresses addresses)
-        : watch(lease),
+        : suspend(lease),
           pace(announcement_period),
           guard(std::move(addresses), "dds/fastdds", SkippedNumbers::Counted) {}
     std::atomic<bool> open{false};        // lets messages out
     std::atomic<std::uint32_t> ports{0};  // on which it listens
-    FastLeaseWatch signs;
-    SuspendDetector watch;
+    FastLeaseWatch lease_watch;
+    SuspendDetector suspend;
     AnnouncementPace pace;
     RtpsGuard guard;
     DiscoveryInput discovery;

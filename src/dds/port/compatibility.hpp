@@ -9,8 +9,9 @@ namespace skein::dds {
 /// Whether a writer and a reader share a partition; no partition is the one called "".
 bool share_partition(const Qos& writer, const Qos& reader);
 
-/// What DDS calls requested against offered (DDS 1.4, 2.2.3), of two that share topic, type and
-/// partition: the first policy of which the writer offers less than the reader wants, or nothing.
+/// Compares the offered QoS of a writer with a reader's requested QoS (DDS 1.4, 2.2.3). They share
+/// topic, type and partition: the first policy of which the writer offers less than the reader
+/// wants, or nothing.
 std::optional<Incompatibility> find_incompatibility(const std::string& topic, const Guid& peer,
                                                     const Qos& offered, const Qos& requested);
 

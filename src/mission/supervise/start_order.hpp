@@ -16,7 +16,8 @@ struct Prerequisite {
 
 /// In which order the peers of a mission are started on one host: each in a layer after those that
 /// provide what it and its CSPs depend on. Of several providers the earliest counts. A service that
-/// a peer of another host provides is not waited for here: the peer itself awaits it.
+/// a peer of another host provides is not waited for here: the peer itself awaits it. MissionState
+/// starts the peers by it.
 class StartOrder {
  public:
   /// `is_here`: for each peer of the mission, whether it is started on this host.

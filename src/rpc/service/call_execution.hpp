@@ -18,7 +18,7 @@ namespace skein::rpc {
 class Service;
 
 /// Runs a service's invocations on the thread that calls it; answers at once, later or as a stream.
-/// Which thread: service.hpp's submit(), call_here() and Options::thread say. Thread-safe.
+/// Service chooses that thread: see its comment in service.hpp. Thread-safe.
 class CallExecution {
  public:
   /// All outlive it.

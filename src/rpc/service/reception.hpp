@@ -11,7 +11,7 @@ namespace skein::rpc {
 
 class Service;
 
-/// While the service's own thread has nothing else to do, it takes the requests itself, and runs
+/// Lets a service's own thread take the requests itself while it has nothing else to do, and run
 /// them right there, which saves their way to it. While a call takes long, another thread takes
 /// what comes, so that cancellations are heard; for a stream, whose reader grants room for its
 /// results, from the beginning.

@@ -30,6 +30,11 @@ namespace skein::rpc {
 /// that run it. Expired and cancelled invocations are dropped unexecuted. Its locks are in its
 /// parts; if one is taken under another, the order is UnfinishedCalls, a stream, CallIntake,
 /// OwedAnswers. ServiceOwner's and CallerTurns' are taken with no other held.
+///
+/// Which thread runs a call: the caller's, if it is of this process and waits, and the service has
+/// CallThread::Caller (call_here()); the service's own thread if that has just taken the message
+/// (submit()); else the executor's next. Which thread takes a message: for shared memory
+/// same_host/receiver.hpp decides; for DDS it is the vendor's.
 class Service : public std::enable_shared_from_this<Service> {
  public:
   struct Options {

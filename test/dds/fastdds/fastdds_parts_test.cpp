@@ -10,7 +10,7 @@
 #include "dds/fastdds/fast_silence.hpp"
 #include "dds/fastdds/forgetting.hpp"
 #include "dds/fastdds/liveliness_assertions.hpp"
-#include "dds/fastdds/participant_leases.hpp"
+#include "dds/fastdds/put_off_leases.hpp"
 #include "dds/fastdds/received_payloads.hpp"
 #include "dds/fastdds/suspend_detector.hpp"
 #include "test/tools/eventually.hpp"
@@ -393,7 +393,7 @@ TEST_CASE(
   all_told();
   CHECK(silent == 1);
   CHECK(returned == 0);
-  transport.signs.heard(participant(1), now);
+  transport.lease_watch.heard(participant(1), now);
   silence.check(now += 5ms);
   all_told();
   CHECK(silent == 1);

@@ -1,4 +1,4 @@
-#include "participant_leases.hpp"
+#include "put_off_leases.hpp"
 
 #include <cstring>
 #include <limits>
