@@ -225,15 +225,17 @@ TEST_CASE("a contender that dies costs its own rows and nobody else's, and the e
     const char* parts;
     std::set<std::string> claims;
   };
-  const auto death =
-      GENERATE(Death{"exit 1",
-                     "calls ways cold_starts joins idle_peers",
-                     {"a call over DDS", "other ways of the vendors",
-                      "process start to first reply", "peers that start at once until all see all",
-                      "octets that an idle peer sends, per second",
-                      "packets that an idle peer sends, per second",
-                      "processor time of an idle peer, per second"}},
-               Death{"echo ready 1; read command", "calls", {"a call over DDS"}});
+  const auto death = GENERATE(
+      Death{"exit 1",
+            "calls ways cold_starts joins idle_peers",
+            {"a call over DDS", "processor time of a call over DDS", "other ways of the vendors",
+             "process start to first reply", "peers that start at once until all see all",
+             "octets that an idle peer sends, per second",
+             "packets that an idle peer sends, per second",
+             "processor time of an idle peer, per second"}},
+      Death{"echo ready 1; read command",
+            "calls",
+            {"a call over DDS", "processor time of a call over DDS"}});
   CAPTURE(death.script);
   const Workshop workshop(death.script);
   const QuickRun run("broken_bench", workshop.program(), std::string(" --only ") + death.parts);
@@ -262,6 +264,7 @@ TEST_CASE("no pair of vendors, size, way to die or other fault is missing", "[lo
       for (const char* placement : {"both on one core", "one core each"}) {
         const json parameters{{"size_bytes", size}, {"placement", placement}};
         CHECK(has(results, "a call over DDS", "skein " + pair, parameters));
+        CHECK(has(results, "processor time of a call over DDS", "skein " + pair, parameters));
         CHECK(has(results, "a call over DDS", "skein " + pair, parameters, "unix socket"));
       }
     }

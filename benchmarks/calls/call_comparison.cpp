@@ -31,7 +31,10 @@ std::vector<Comparison> comparisons_of(const Contest& contest, const std::string
 }  // namespace
 
 std::vector<Comparison> compare_calls(Configurations& configurations, const CallPlan& plan) {
-  Contest contest("calls", closed_loops("a call over DDS", plan.sizes));
+  std::vector<Trial> trials = closed_loops("a call over DDS", plan.sizes);
+  for (const auto& [size, calls] : plan.sizes)
+    trials.push_back(processor_time("processor time of a call over DDS", size, calls));
+  Contest contest("calls", std::move(trials));
   for (const auto& [server, client] : vendor_pairs()) {
     contest.enter(configurations.skein(server, client));
     contest.enter(configurations.raw(server, client));

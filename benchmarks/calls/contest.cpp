@@ -137,6 +137,15 @@ std::vector<Trial> closed_loops(const std::string& claim,
   return trials;
 }
 
+Trial processor_time(const std::string& claim, std::size_t size_bytes, std::size_t count) {
+  return {claim, {{"size_bytes", size_bytes}}, [=](Running& running) {
+            running.call(size_bytes, count / 10 + 1);
+            const double before = running.cpu_us();
+            running.call(size_bytes, count);
+            return std::vector{(running.cpu_us() - before) / static_cast<double>(count)};
+          }};
+}
+
 std::string words(std::initializer_list<std::size_t> numbers) {
   std::string text;
   for (const std::size_t number : numbers) text += " " + std::to_string(number);

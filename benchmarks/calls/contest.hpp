@@ -20,6 +20,8 @@ struct Trial {
 /// One call after the other, after some that wake the processes up.
 Trial closed_loop(const std::string& claim, std::size_t size_bytes, std::size_t count);
 std::vector<Trial> closed_loops(const std::string& claim, const std::vector<CallPlan::Size>& sizes);
+/// Of both sides, the mean of `count` calls, one after the other.
+Trial processor_time(const std::string& claim, std::size_t size_bytes, std::size_t count);
 /// Calls of 64 octets at a fixed rate; a call's time starts when it should have been sent.
 Trial paced(const std::string& claim, std::size_t count, std::size_t interval_us);
 /// For a command to a peer: each with a space before it.

@@ -29,22 +29,13 @@ Trial pipelined(std::size_t count, std::size_t depth) {
           }};
 }
 
-Trial cpu(std::size_t size, std::size_t count) {
-  return {"processor time per call, both sides", {{"size_bytes", size}}, [=](Running& running) {
-            running.call(size, count / 10 + 1);
-            const double before = running.cpu_us();
-            running.call(size, count);
-            return std::vector{(running.cpu_us() - before) / static_cast<double>(count)};
-          }};
-}
-
 std::vector<Trial> trials_of(const RivalPlan& plan) {
   std::vector<Trial> trials = closed_loops("one call after the other", plan.sizes);
   trials.push_back(paced("at a fixed rate, from the intended send", plan.paced_calls, 500));
   for (const std::size_t clients : {1, 4, 32}) trials.push_back(crowd(clients, plan.crowd_calls));
   trials.push_back(pipelined(plan.pipelined_calls, 64));
   for (const std::size_t size : {std::size_t{64}, std::size_t{65'536}}) {
-    trials.push_back(cpu(size, plan.cpu_calls));
+    trials.push_back(processor_time("processor time per call, both sides", size, plan.cpu_calls));
   }
   return trials;
 }
