@@ -172,8 +172,9 @@ void add_log(CLI::App& app, int& result) {
   auto& command = add_command(
       app, "log",
       "Show what the entities of a domain log, live\n\n"
-      "First come the latest lines that each process has logged before, at most 256. What a "
-      "process logs at all, it decides itself: see SKEIN_LOG in the guide.",
+      "First come the latest lines that each process has logged before, at most 256. The "
+      "variable SKEIN_LOG in a process's environment sets the least level that it logs: debug, "
+      "info (the default), warning or error.",
       {{"skein log --domain 47", "All lines, until Ctrl-C"},
        {"skein log --entity navigator --level warning", "Warnings and errors of one process"}});
   auto& arguments = arguments_of(command, show_log, result);
