@@ -33,6 +33,7 @@ SLEEPERS = {
 QUOTING = {
     "README.md": (("cpp", "idl", "python"), ("examples",)),
     "GUIDE.md": (("cpp", "idl", "xml"), ("examples", "test/guide")),
+    "TROUBLESHOOTING.md": (("cpp", "idl", "xml"), ("examples", "test/guide")),
     # Each shows its main class in use.
     **{
         f"include/skein/{name}.hpp": (("cpp",), ("examples", "test/guide"))
