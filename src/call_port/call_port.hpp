@@ -110,8 +110,8 @@ class Sender {
   /// Sends a message. `left` tells for how long it is still worth sending: a sender calls it only
   /// if it finds no room at first; one over DDS ignores it, and waits for kPatience. Throws
   /// InvalidArgument if the message is larger than receivers take, Overloaded if there was no room
-  /// in time, Unavailable if the other side of a client's connection has gone, otherwise Internal
-  /// with the reason.
+  /// in time, NotSent if the other side of a client's connection has gone, otherwise Internal with
+  /// the reason.
   virtual void send(std::span<const std::byte> message,
                     const std::function<Duration()>& left = {}) = 0;
   /// Sends a message that has left out `value` at `position`; throws as send(). Returns false, and

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "dds/port/sample_format.hpp"
+#include "skein/detail/channel.hpp"
 #include "skein/error.hpp"
 
 namespace skein::same_host {
@@ -101,7 +102,7 @@ class LinkSender final : public calls::Sender {
         throw Overloaded("the other side has not taken the message from its memory in time: " +
                          std::to_string(calls::kPatience.count()) + " ms, and 1 s for each 16 MB");
       case LinkWriter::Sent::Ended:
-        if (must_arrive_) throw Unavailable("the connection has ended; nothing was sent");
+        if (must_arrive_) throw NotSent("the connection has ended; nothing was sent");
     }
   }
 

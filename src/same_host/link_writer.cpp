@@ -99,7 +99,7 @@ void LinkWriter::forget(const LoanNote& gone) {
 
 // Under the lock.
 LinkWriter::Sent LinkWriter::write(RingWriter::Part message, const Patience& patience) {
-  if (state_.ended()) return Sent::Ended;
+  if (ended()) return Sent::Ended;
   message.lets_sleep = let_sleep();
   try {
     if (ring_.put(message)) {
@@ -112,12 +112,12 @@ LinkWriter::Sent LinkWriter::write(RingWriter::Part message, const Patience& pat
       return Sent::Yes;
     }
     message.lets_sleep = false;  // it has been woken, as there is no room
-    if (ring_.write(message, patience.begin(), [this] { return state_.ended(); })) return Sent::Yes;
+    if (ring_.write(message, patience.begin(), [this] { return ended(); })) return Sent::Yes;
   } catch (const BrokenRing&) {
     state_.break_off();
     throw;
   }
-  return state_.ended() ? Sent::Ended : Sent::NoRoom;
+  return ended() ? Sent::Ended : Sent::NoRoom;
 }
 
 bool LinkWriter::await_taken(Instant deadline) {

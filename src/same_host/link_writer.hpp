@@ -80,6 +80,7 @@ class LinkWriter {
   void wake_peer(Wakes& wakes);
 
  private:
+  bool ended() const { return state_.ended() || ring_.reader_gone(); }
   bool let_sleep();
   Sent write(RingWriter::Part message, const Patience& patience);
   Lender::Connection lending();

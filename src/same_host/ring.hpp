@@ -32,6 +32,7 @@ struct RingState {
   Word caller_reads{0};   ///< 1 while such a thread is to take what comes: the reader is not woken.
   Word reader_core{0};    ///< Where it went to sleep, from 1 on; 0: it is to be woken at once.
   Word caller_core{0};
+  Word reader_gone{0};  ///< 1 once it takes nothing more.
   alignas(64) Word writer_sleeps{0};
 };
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free && sizeof(RingState) == 256);
@@ -81,6 +82,9 @@ class RingWriter {
   void wake_reader(Wakes& wakes);
   /// Whether a reader sleeps that was last seen on this thread's core.
   bool reader_sleeps_here() const;
+
+  /// Whether the reader takes nothing more, so that a message put in now is not received.
+  bool reader_gone() const { return place_.state->reader_gone.load() != 0; }
 
   /// Waits until the reader has taken everything; false at the deadline, or once `ended` is so.
   bool await_empty(Instant deadline, const std::function<bool()>& ended);

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "skein/detail/channel.hpp"
 #include "skein/error.hpp"
 #include "test/same_host/ring_all_doorbells.hpp"
 #include "test/tools/eventually.hpp"
@@ -182,6 +183,13 @@ TEST_CASE("a connection that has carried small calls keeps at most 64 KiB of mem
   const std::size_t kib = most_resident_kib();
   CHECK(kib > 0);
   CHECK(kib <= 64);
+}
+
+TEST_CASE("a sender knows of a provider's end before anything tells of it") {
+  Pair pair;
+  const auto request = pair.send_requests();
+  pair.requests.reset();
+  CHECK_THROWS_AS(request->send(message("late")), NotSent);
 }
 
 TEST_CASE("whichever side goes, the other one is told once, after all that was sent") {

@@ -59,13 +59,21 @@ bool RemoteCalls::start(const std::shared_ptr<PendingCall>& call, const void* in
     if (const auto answers = answers_.lock()) call->set_answers(answers);
   }
   bool sent = false;
+  std::exception_ptr not_sent;
   call->attempt([&] {
     const std::uint64_t told_before = told_;
-    sent = parts_.path->send(*call, number, in);
+    try {
+      sent = parts_.path->send(*call, number, in);
+    } catch (const NotSent&) {
+      not_sent = std::current_exception();
+    }
     // The call ended while it was sent: the server may have heard of its end first.
     if (sent && told_ != told_before && call->claimed()) tell_server(number);
   });
-  if (!sent || call->operation().oneway) remove(number);
+  if (!sent || call->operation().oneway) {
+    const bool waited = remove(number) != nullptr;  // or else it has ended in another way
+    if (not_sent && waited) std::rethrow_exception(not_sent);
+  }
   if (sent && call->operation().oneway && call->claim()) finish(*call, number, nullptr);
   return true;
 }

@@ -47,7 +47,8 @@ class RemoteCalls : public std::enable_shared_from_this<RemoteCalls> {
   void hand_over() const;
 
   /// Sends a call's request. Returns false, and leaves the call as it was, if none is taken any
-  /// more. Throws Overloaded if too many calls wait already; all other errors end the call.
+  /// more. Throws Overloaded if too many calls wait already, and NotSent; all other errors end the
+  /// call.
   bool start(const std::shared_ptr<PendingCall>& call, const void* in);
   void on_reply(std::span<const std::byte> message, const wire::ReplyHead& head);
   /// A reply that cannot be read, except perhaps for the call that it answers.

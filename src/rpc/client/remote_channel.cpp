@@ -300,6 +300,7 @@ void RemoteChannel::start_here(const std::shared_ptr<PendingCall>& call, const v
       std::lock_guard lock(state_->mutex);  // under it the phase changes, too
     }
   } catch (const NotSent&) {
+    retire(state_->options.gone);  // the next call is not made here
     throw;
   } catch (...) {
     call->fail(std::current_exception());

@@ -84,7 +84,7 @@ bool RequestPath::send(const PendingCall& call, std::uint64_t number, const void
   }
   const auto sender = this->sender();
   if (call.claimed()) return false;
-  if (!sender) throw Unavailable("the connection to " + peer_ + " has ended; nothing was sent");
+  if (!sender) throw NotSent("the connection to " + peer_ + " has ended; nothing was sent");
   if (journal_) {
     journal_->note(introspection::CallStep::Sent, client_, number, address_.service,
                    call.operation());
