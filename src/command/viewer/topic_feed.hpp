@@ -16,9 +16,8 @@
 
 namespace skein::command {
 
-/// Topics of a domain as channels of a server. serve_view() (view.cpp) asks all entities which
-/// topics there are. Each is read while somebody watches its channel, and not before. Used by one
-/// thread.
+/// Shows topics as channels of a server. serve_view() (view.cpp) finds them: it asks all entities.
+/// Each is read while somebody watches its channel, and not before. Used by one thread.
 class TopicFeed {
  public:
   /// All outlive it.

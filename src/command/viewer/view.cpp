@@ -38,8 +38,8 @@ void add_services(view::Graph& graph, const brokerless_discovery::Broker& broker
 
 }  // namespace
 
-// Each second, while a client looks, asks all entities for their topics and services, and shows
-// them.
+// Each second, while a client looks, asks all entities for their topics, and shows these and the
+// services that the broker knows.
 int serve_view(const ViewArguments& arguments) {
   const Interruption interruption;
   Entity entity = join(arguments, "view");

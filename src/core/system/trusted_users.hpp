@@ -2,8 +2,9 @@
 
 #include <sys/types.h>
 
-// By these a socket's owner decides who may connect: RequestServer lets in this user and root,
-// ProcessWatch this user alone, and Meeting the users of its rules.
+// A socket's owner decides who may connect: mission/process/request_server.cpp lets in this user
+// and root, brokerless_discovery/process_watch.cpp this user alone, and same_host/meeting.cpp the
+// users of its rules. These functions tell them who is who.
 namespace skein {
 
 /// Whether the kernel shows every user by this number whom this process's user namespace does not

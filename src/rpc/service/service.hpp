@@ -31,10 +31,10 @@ namespace skein::rpc {
 /// parts; if one is taken under another, the order is UnfinishedCalls, a stream, CallIntake,
 /// OwedAnswers. ServiceOwner's and CallerTurns' are taken with no other held.
 ///
-/// Which thread runs a call: the caller's, if it is of this process and waits, and the service has
-/// CallThread::Caller (call_here()); the service's own thread if that has just taken the message
-/// (submit()); else the executor's next. Which thread takes a message: for shared memory
-/// same_host/receiver.hpp decides; for DDS it is the vendor's.
+/// Which thread runs a call: the caller's, if it waits in this process and the service has
+/// CallThread::Caller (LocalChannel::call() decides, and uses call_here()); the service's own
+/// thread if that has just taken the message (submit()); else the executor's next. Which thread
+/// takes a message: for shared memory same_host/receiver.hpp decides; for DDS it is the vendor's.
 class Service : public std::enable_shared_from_this<Service> {
  public:
   struct Options {
