@@ -77,15 +77,18 @@ bool PendingCall::finished() const {
 }
 
 void PendingCall::set_answers(const std::shared_ptr<Answers>& answers) {
+  std::shared_ptr<Answers> before;
   bool attended = false;
   {
     std::lock_guard lock(mutex_);
     if (finished_) return;
-    answers_ = answers;
-    answers->begin(blocking_);
+    before = std::exchange(answers_, answers);
+    if (answers) answers->begin(blocking_);
     attended = attended_;
   }
-  if (attended) answers->attend();
+  if (attended && answers) answers->attend();
+  if (attended && before) before->leave();
+  if (before) before->end();
 }
 
 // No thread takes the answer in wait(), and the call's end matters.

@@ -42,9 +42,10 @@ RingPlace LinkState::incoming() const { return place_of(*memory_, side_ == Side:
 
 LoanCounts& LinkState::loans() const { return state_in(*memory_).loans; }
 
-// The other side sees the word at once; of the socket's end a thread of its own has to tell it.
+void LinkState::stop_taking() { incoming().state->reader_gone.store(1); }
+
 void LinkState::close() {
-  incoming().state->reader_gone.store(1);
+  stop_taking();
   shutdown(socket_->get(), SHUT_RDWR);
   if (!ended_.exchange(true)) on_end_();
 }

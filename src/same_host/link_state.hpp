@@ -36,6 +36,9 @@ class LinkState : public std::enable_shared_from_this<LinkState> {
   const DoorbellPair& doorbells() const noexcept { return doorbells_; }
   const std::shared_ptr<const FileDescriptor>& socket() const noexcept { return socket_; }
 
+  /// This side takes no more messages. The other side's next send() sees that, without a thread
+  /// that tells it.
+  void stop_taking();
   /// Both sides learn of the end. Nothing more is sent; messages that the other side sent before
   /// can still be received. Twice is no error.
   void close();

@@ -26,7 +26,7 @@ std::optional<LinkWriter::Sent> LinkWriter::send_lending(std::span<const std::by
                                                          const Patience& patience) {
   if (state_.side() != LinkState::Side::Client) return std::nullopt;
   std::lock_guard lock(mutex_);
-  if (state_.ended()) return Sent::Ended;
+  if (ended()) return Sent::Ended;
   if (!lender_) lender_.emplace(lending());
   const auto note = lender_->lend(value, position);
   if (!note) return std::nullopt;
@@ -122,6 +122,7 @@ LinkWriter::Sent LinkWriter::write(RingWriter::Part message, const Patience& pat
 
 bool LinkWriter::await_taken(Instant deadline) {
   std::lock_guard lock(mutex_);
+  if (ring_.reader_gone()) return true;  // it takes nothing more
   try {
     return ring_.await_empty(deadline, [this] { return state_.ended(); });
   } catch (const BrokenRing&) {

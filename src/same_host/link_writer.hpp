@@ -49,8 +49,8 @@ class LinkWriter {
   std::optional<Sent> send_lending(std::span<const std::byte> message,
                                    const std::shared_ptr<LoanMemory>& value, std::size_t position,
                                    const Patience& patience);
-  /// Waits until the other side has taken everything. Returns false at the deadline, when the link
-  /// ends, and if the ring is found broken.
+  /// Waits until the other side has taken everything that it will take. Returns false at the
+  /// deadline, when the link ends, and if the ring is found broken.
   bool await_taken(Instant deadline);
   /// The link has ended: a thread that waits here goes on.
   void note_end() { ring_.wake(); }

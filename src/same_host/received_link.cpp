@@ -161,6 +161,7 @@ void ReceivedLink::remove() {
     over_ = true;
     unfinished_->change(std::exchange(octets_, 0), 0);
   }
+  link->stop_taking();
   wake();
 }
 

@@ -30,6 +30,14 @@ struct RefusingEcho : EchoService {
   std::atomic<int> failed{0};
 };
 
+/// At first a call of its own is not sent.
+struct NeedyEcho : EchoService {
+  std::string echo(const std::string& text) override {
+    if (++calls < 3) throw NotSent("a service that it needs has gone");
+    return text;
+  }
+};
+
 /// Does not answer while it is provided.
 struct EndlessEcho : EchoService {
   using EchoService::EchoService;
@@ -68,6 +76,15 @@ TEST_CASE("when a provider leaves the next call goes to the next one", "[wire]")
   CHECK(trio.echo->within(5s).async_echo("y").get() == "y");
   CHECK(trio.echo->echo("z") == "z");
   CHECK(trio.second_service->calls == 2);
+}
+
+TEST_CASE("a call whose implementation could not send one of its own is made once") {
+  const auto entity = make_server();
+  const auto service = std::make_shared<NeedyEcho>();
+  entity->provide<LouderEcho>(service);
+  auto echo = entity->connect<Echo>();
+  CHECK_THROWS_AS(echo.echo("x"), Unavailable);
+  CHECK(service->calls == 1);
 }
 
 TEST_CASE("a call on its way when its provider leaves ends, and not by its deadline", "[wire]") {

@@ -66,7 +66,7 @@ class PendingCall : public std::enable_shared_from_this<PendingCall> {
 
   bool finished() const;
 
-  /// Set by the transport, once, before the request leaves.
+  /// Set by the transport before the request leaves; null if it did not leave.
   void set_answers(const std::shared_ptr<Answers>& answers);
 
   /// Blocks until finished. The transport guarantees this by the deadline.

@@ -72,7 +72,11 @@ bool RemoteCalls::start(const std::shared_ptr<PendingCall>& call, const void* in
   });
   if (!sent || call->operation().oneway) {
     const bool waited = remove(number) != nullptr;  // or else it has ended in another way
-    if (not_sent && waited) std::rethrow_exception(not_sent);
+    if (not_sent && waited) {
+      parts_.path->note_end(number, call->operation(), not_sent);
+      call->set_answers(nullptr);
+      std::rethrow_exception(not_sent);
+    }
   }
   if (sent && call->operation().oneway && call->claim()) finish(*call, number, nullptr);
   return true;

@@ -37,7 +37,7 @@ class RequestPath {
   bool all_taken() const;
 
   /// Sends the request of a call; returns false, and sends nothing, if the call has ended. Throws
-  /// as Sender::send() does, Unavailable once closed, TimedOut if the deadline is over.
+  /// as Sender::send() does, NotSent once closed, TimedOut if the deadline is over.
   bool send(const PendingCall& call, std::uint64_t number, const void* in) const;
   /// Sends what is about a call, or about the session.
   void send_reserved(std::uint32_t operation, const wire::RequestTrailer& trailer) const;

@@ -69,6 +69,7 @@ class CallExecution::Deferred final : public PendingReply {
     finish(why);
   }
 
+  bool withdrawn() const noexcept { return ending_ == Ending::Withdrawn; }
   Invocation& invocation() const noexcept { return *invocation_; }
   const OperationInfo& operation() const noexcept { return *invocation_->operation; }
   CallRecorder::Tap& tap() noexcept { return tap_; }
@@ -246,6 +247,7 @@ void CallExecution::end(Deferred& deferred, std::exception_ptr error) {
   const void* result = deferred.out();
   try {
     account(operation, result, invocation, deferred.tap(), [&] {
+      if (error && deferred.withdrawn()) std::rethrow_exception(error);
       if (error) throw_for_caller(operation, error);
     });
     refuse_too_late(operation, invocation);

@@ -9,6 +9,7 @@
 #include "rpc/wire/common.hpp"
 #include "skein/detail/bytes.hpp"
 #include "skein/detail/cdr.hpp"
+#include "skein/detail/channel.hpp"
 #include "skein/error.hpp"
 
 namespace skein::rpc {
@@ -44,6 +45,8 @@ void check_sendable(const OperationInfo& operation, const UserException& excepti
     check_declared(operation, exception);
     check_sendable(operation, exception);
     throw;
+  } catch (const NotSent& error) {
+    throw Unavailable(error.what());  // a call of the implementation was not sent; this one was
   } catch (const Error&) {
     throw;
   } catch (const std::exception& failure) {
