@@ -89,11 +89,12 @@ struct Meeting::State {
         if (stopping) return;
         ++wake_ups;
         // New clients come last: a client that has spoken leaves its place to them.
-        const auto listening = std::ranges::stable_partition(
-            events, [&](const auto& each) { return !offers.contains(each.id); });
-        for (auto event = events.begin(); event != listening.begin(); ++event)
+        const auto listening =
+            std::stable_partition(events.begin(), events.end(),
+                                  [&](const auto& each) { return !offers.contains(each.id); });
+        for (auto event = events.begin(); event != listening; ++event)
           handle(event->id, admitted, gone);
-        for (const auto& event : listening) let_in(offers.at(event.id));
+        for (auto event = listening; event != events.end(); ++event) let_in(offers.at(event->id));
         expire();
         news = turned_away.take();
       }
