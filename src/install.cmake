@@ -4,17 +4,31 @@ include(CMakePackageConfigHelpers)
 
 set(skein_package ${CMAKE_INSTALL_LIBDIR}/cmake/skein)
 
-# Exported as skein::skein, skein::c, skein::fusion and skein::navigation_idl; the others only serve plugins at run time.
+# Users link these, by CMake as skein::skein, skein::c, …, or by pkg-config as skein, skein-c, …
 set_target_properties(skein_navigation_idl PROPERTIES EXPORT_NAME navigation_idl)
 set_target_properties(skein_fusion PROPERTIES EXPORT_NAME fusion)
-set(skein_libraries skein skein_c skein_mission skein_fusion skein_navigation_idl skein_navigation skein_route_checker)
-set_target_properties(${skein_libraries} PROPERTIES
+set(linked_libraries skein skein_c skein_fusion skein_navigation_idl)
+# The others serve the command, or plugins and lie beside these; nobody else links them.
+set(plugin_libraries skein_navigation skein_route_checker)
+set_target_properties(${linked_libraries} skein_mission ${plugin_libraries} PROPERTIES
   VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR} INSTALL_RPATH "$ORIGIN")
+set_target_properties(${plugin_libraries} PROPERTIES INSTALL_RPATH "$ORIGIN:$ORIGIN/..")
 
-install(TARGETS skein skein_c skein_fusion skein_navigation_idl EXPORT skeinTargets
+install(TARGETS ${linked_libraries} EXPORT skeinTargets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(TARGETS skein_mission skein_navigation skein_route_checker LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS skein_mission LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} NAMELINK_SKIP)
+install(TARGETS ${plugin_libraries} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/skein NAMELINK_SKIP)
 install(EXPORT skeinTargets NAMESPACE skein:: DESTINATION ${skein_package})
+set(up /at)
+cmake_path(RELATIVE_PATH up BASE_DIRECTORY /at/${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+set(skein_fusion_requires skein)
+set(skein_navigation_idl_requires skein)
+foreach(library IN LISTS linked_libraries)
+  string(REPLACE "_" "-" pc ${library})
+  set(requires ${${library}_requires})
+  configure_file(${CMAKE_CURRENT_LIST_DIR}/skein.pc.in ${CMAKE_CURRENT_BINARY_DIR}/${pc}.pc @ONLY)
+  install(FILES ${CMAKE_CURRENT_BINARY_DIR}/${pc}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+endforeach()
 
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/skein DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 foreach(target skein_idl skein_broker skein_rpc skein_entity skein_navigation_idl)
