@@ -29,7 +29,8 @@ int begin_component(const NewComponentArguments& arguments) {
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
   ::execv(pointers.front(), pointers.data());
-  throw Unavailable(compiler.string() + " cannot be run: " + std::strerror(errno));
+  throw Unavailable(compiler.string() + " cannot be run: " + std::strerror(errno) +
+                    "; install Skein's IDL compiler, package skein-idl");
 }
 
 }  // namespace skein::command

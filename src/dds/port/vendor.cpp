@@ -46,8 +46,8 @@ std::shared_ptr<Vendor> process_wide_loopback() {
 std::shared_ptr<Vendor> load_module(const Module& module) {
   try {
     const SharedObject object("skein_" + module.vendor,
-                              "install Skein's module for '" + module.vendor +
-                                  "' and the vendor's library, package " + module.package);
+                              "install Skein's module, package skein-" + module.vendor +
+                                  ", and the vendor's library, package " + module.package);
     object.check_abi("skein_module_abi");
     return *object.function<decltype(skein_module_vendor)>("skein_module_vendor")();
   } catch (const InvalidArgument& other_version) {
