@@ -189,10 +189,21 @@ int with_output_checked(int code) {
   return code == 0 ? launch::kOutputLost : code;
 }
 
+/// The kernel gives PID 1, which a container's first process is, no default actions. Without these
+/// a command that handles no signals, or does not handle them yet, could only be killed.
+void give_default_actions_to_pid_1() {
+  if (::getpid() != 1) return;
+  for (const int signal : {SIGHUP, SIGINT, SIGQUIT, SIGTERM}) {
+    if (is_ignored(signal)) continue;
+    std::signal(signal, [](int number) { ::_exit(launch::kInterrupted + number); });
+  }
+}
+
 }  // namespace
 }  // namespace skein::command
 
 int main(int argc, char** argv) {
+  skein::command::give_default_actions_to_pid_1();
   std::signal(SIGXFSZ, SIG_IGN);  // beyond `ulimit -f` a write fails, which is told in words
   skein::is_logged(skein::LogLevel::Error);  // tells of a SKEIN_LOG that is no level
   CLI::App app;

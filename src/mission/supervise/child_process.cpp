@@ -166,7 +166,7 @@ void ChildProcess::end_group() noexcept {
       found = ::waitpid(whom, nullptr, 0);
     } while (found > 0 || (found < 0 && errno == EINTR));
   };
-  // First the leader, then what it left behind: orphans come to the launcher (see Supervisor).
+  // First the leader, then its orphans, which come to the launcher (see AdoptedProcesses).
   wait(id_);
   wait(-id_);
   kill_marked_processes(mark_);

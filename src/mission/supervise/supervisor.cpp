@@ -1,7 +1,6 @@
 #include "mission/supervise/supervisor.hpp"
 
 #include <poll.h>
-#include <sys/prctl.h>
 
 #include <algorithm>
 #include <csignal>
@@ -10,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "adopted_processes.hpp"
 #include "core/printable.hpp"
 #include "core/suggestion.hpp"
 #include "core/wall_clock.hpp"
@@ -26,29 +26,6 @@ namespace skein::launch {
 namespace {
 
 Time now() { return std::chrono::steady_clock::now(); }
-
-/// While it lives, this process can wait for its children and for theirs: orphans come to it
-/// instead of to init, and SIGCHLD is not ignored, as a parent may have left it.
-class ChildKeeping {
- public:
-  ChildKeeping() {
-    ::prctl(PR_GET_CHILD_SUBREAPER, &adopted_before_);
-    ::prctl(PR_SET_CHILD_SUBREAPER, 1);
-    struct sigaction standard {};
-    standard.sa_handler = SIG_DFL;
-    ::sigaction(SIGCHLD, &standard, &action_before_);
-  }
-  ChildKeeping(const ChildKeeping&) = delete;
-  ChildKeeping& operator=(const ChildKeeping&) = delete;
-  ~ChildKeeping() {
-    ::sigaction(SIGCHLD, &action_before_, nullptr);
-    ::prctl(PR_SET_CHILD_SUBREAPER, adopted_before_);
-  }
-
- private:
-  int adopted_before_ = 0;
-  struct sigaction action_before_ {};
-};
 
 constexpr const char* kOpenEnd =
     "; the peer that runs the mission is not among them: this launcher runs until it is "
@@ -88,6 +65,7 @@ class MissionRun {
     while (!state_.all_final()) {
       wait();
       for (std::size_t i = 0; i < children_.size(); ++i) look_at(i);
+      adopted_.reap([this](pid_t process) { return is_awaited(process); });
       apply(state_.tick(now()), true);
       serve_requests();
       heed_signals();
@@ -116,6 +94,13 @@ class MissionRun {
     const auto child = std::ranges::find(plan_.children, process, &ChildPlan::name);
     recent_.add(nanoseconds_since_1970(), process,
                 child == plan_.children.end() ? "" : child->system, printed, text);
+  }
+
+  /// Whether collect() waits for this child, since its exit status counts.
+  bool is_awaited(pid_t process) const {
+    return std::ranges::any_of(children_, [&](const SupervisedChild& child) {
+      return child.process() != nullptr && child.process()->id() == process;
+    });
   }
 
   void report(const std::string& text) const { options_.on_event({"", ChildState::Idle, text}); }
@@ -338,7 +323,8 @@ class MissionRun {
 
   void wait() {
     std::vector<pollfd> watched{{stop_.descriptor(), POLLIN, 0},
-                                {signals_.descriptor(), POLLIN, 0}};
+                                {signals_.descriptor(), POLLIN, 0},
+                                {adopted_.descriptor(), POLLIN, 0}};
     if (options_.requests) watched.push_back({options_.requests->descriptor(), POLLIN, 0});
     for (const auto& child : children_) {
       auto* process = child.process();
@@ -366,8 +352,8 @@ class MissionRun {
   const SupervisorOptions options_;  // as they were given, and each line is noted
   StopRequest& stop_;
   SignalReader signals_;
-  const ChildKeeping child_keeping_;
   GroupGuard guard_;
+  AdoptedProcesses adopted_;  // Between the guard, which it spares, and children_, which end first.
   const Time start_ = now();
   MissionState state_;
   std::vector<SupervisedChild> children_;

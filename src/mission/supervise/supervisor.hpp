@@ -51,8 +51,12 @@ struct SupervisorOptions {
 /// left them for a session of its own. When the launcher itself is killed, the kernel kills its
 /// children, and a guard process all that they have started.
 ///
-/// Not reached are processes that were started without their parent's environment and have left its
-/// group, and processes of another user.
+/// Orphans below this process become its children, as they do of PID 1. run() reaps them when they
+/// end, and kills those that are left when the mission has ended. This process starts no children
+/// of its own meanwhile.
+///
+/// If a process was started without its parent's environment and has left its group, it lives on
+/// until the mission ends, and beyond a killed launcher. Processes of another user are not reached.
 ///
 /// Children belong to the thread that calls run(); it calls back `on_output` and `on_event`, and
 /// makes no other thread.

@@ -49,6 +49,9 @@ void break_down(ComponentRegistry& registry, const std::string& how) {
   if (how == "aborts") std::abort();
   if (how == "exits") _exit(0);
   if (how == "exits in order") std::exit(0);
+  if (how == "hangs") {
+    while (true) ::pause();
+  }
   if (how == "throws") throw std::runtime_error("no licence");
   if (how == "registers twice") registry.add_csp("office", [](const auto&) { return desk(); });
 }

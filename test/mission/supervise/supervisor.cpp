@@ -2,6 +2,8 @@
 
 #include <fcntl.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -391,6 +393,60 @@ TEST_CASE("A launcher whose parent ignored SIGCHLD sees its children end all the
   RecordedMission mission({supervised_mission("exit 6")});
   CHECK(mission.run().exit_code == 6);
   CHECK(std::signal(SIGCHLD, before) == SIG_IGN);
+}
+
+TEST_CASE("An orphan that has left its group and its environment is waited for when it ends") {
+  TemporaryFolder folder;
+  const std::string pid = (folder.path() / "pid").string();
+  // The mission ends only when no process has that number: a zombie would have it still.
+  RecordedMission mission({supervised_mission(
+      "(env -i setsid sh -c 'echo $$ > " + pid + "' &); until [ -s " + pid +
+      " ]; do sleep 0.01; done; while kill -0 $(cat " + pid + "); do sleep 0.01; done; exit 0")});
+  CHECK(mission.run().exit_code == 0);
+}
+
+TEST_CASE("Orphans that end cost no child its exit status") {
+  auto child = shell_child("a", "for i in 1 2 3 4 5; do (env -i setsid true &); done; exit 3");
+  child.rules.restart.policy = RestartPolicy::OnFailure;
+  child.rules.restart.max_delay = 1ms;
+  child.rules.restart.max_restarts = 30;
+  RecordedMission mission({child});
+  CHECK(mission.run().exit_code == kStartFailed);
+  CHECK(mission.saw("restart number 30"));
+  for (const std::string& event : mission.events) {
+    if (event.find("ended with") != std::string::npos)
+      CHECK_THAT(event, Catch::Contains("ended with exit code 3"));
+  }
+}
+
+TEST_CASE("An orphan that has left its group and its environment does not survive the mission") {
+  TemporaryFolder folder;
+  folder.write("pids", "");
+  const std::string pids = (folder.path() / "pids").string();
+  // It ignores signals, and has a child that has left it, too.
+  const std::string stray = folder
+                                .write("stray.sh", "trap '' INT TERM; echo $$ >> " + pids +
+                                                       "; [ $# -gt 0 ] || setsid sh $0 child & "
+                                                       "while :; do sleep 1000; done")
+                                .string();
+  RecordedMission mission(
+      {supervised_mission("(env -i setsid sh " + stray + " &); until [ $(wc -l < " + pids +
+                          ") -eq 2 ]; do sleep 0.01; done")});
+  CHECK(mission.run().exit_code == 0);
+  REQUIRE(numbers_in(pids).size() == 2);
+  for (const pid_t orphan : numbers_in(pids)) CHECK_FALSE(exists(orphan));
+}
+
+TEST_CASE("A child that this process had before the mission outlives it") {
+  const pid_t earlier = ::fork();
+  if (earlier == 0) {
+    while (true) ::pause();
+  }
+  RecordedMission mission({supervised_mission("exit 0")});
+  CHECK(mission.run().exit_code == 0);
+  CHECK(::waitpid(earlier, nullptr, WNOHANG) == 0);
+  ::kill(earlier, SIGKILL);
+  CHECK(::waitpid(earlier, nullptr, 0) == earlier);
 }
 
 TEST_CASE("A process that closes its output and says nothing more is watched all the same") {
