@@ -80,7 +80,6 @@ FastParticipant::FastParticipant(const ParticipantOptions& options, const Segmen
     throw_no_participant(options);
   }
   guid_ = to_guid(participant_->getGuid()).participant();
-  transport_->state->discovery.opened(discovery_mutex(*participant_));
   transport_->state->open = true;
   if (!options_.network.multicast_discovery) return;
   try {

@@ -46,6 +46,9 @@ class FastParticipant final : public Participant {
   /// descriptions of readers before it waits for the lock of discovery, whose holder may need one.
   std::mutex& writers() noexcept { return writers_; }
 
+  /// To be held while an endpoint is removed.
+  std::mutex& removal() noexcept { return transport_->state->discovery.removal(); }
+
   FastSilence& silence() noexcept { return silence_; }
   /// Tells others, often enough for `lease`, that this participant's writers live.
   void assert_liveliness_for(std::chrono::nanoseconds lease);

@@ -45,7 +45,7 @@ FastReader::FastReader(FastParticipant& participant, const Topic& topic, const Q
 /// is one, and call it, without a lock. When the reader has been removed none of them is left.
 FastReader::~FastReader() {
   {
-    std::lock_guard lock(participant_.readers().creation());
+    std::scoped_lock lock(participant_.readers().creation(), participant_.removal());
     participant_.readers().remove(*this);
     rtps::RTPSDomain::removeRTPSReader(reader_);
   }

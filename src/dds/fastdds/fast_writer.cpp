@@ -72,7 +72,10 @@ FastWriter::~FastWriter() {
   // Fast DDS gives back the samples of a writer that goes while its timer still looks at them, and
   // may then count holes among them without end.
   history_.remove_all_changes();
-  rtps::RTPSDomain::removeRTPSWriter(writer_);
+  {
+    std::lock_guard lock(participant_.removal());
+    rtps::RTPSDomain::removeRTPSWriter(writer_);
+  }
   events_->close();
 }
 

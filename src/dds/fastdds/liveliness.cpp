@@ -1,7 +1,5 @@
 #include "liveliness.hpp"
 
-#include <fastdds/rtps/builtin/BuiltinProtocols.h>
-#include <fastdds/rtps/builtin/discovery/participant/PDP.h>
 #include <fastdds/rtps/builtin/liveliness/WLP.h>
 #include <fastdds/rtps/history/WriterHistory.h>
 #include <fastdds/rtps/participant/RTPSParticipant.h>
@@ -10,23 +8,8 @@
 #include <cstring>
 
 namespace skein::dds::fastdds {
-namespace {
 
 namespace rtps = eprosima::fastrtps::rtps;
-
-rtps::BuiltinProtocols* builtin_protocols(rtps::WLP& liveliness);
-
-// They are private, and lead to the only way to the lock. An explicit instantiation may name a
-// private member ([temp.spec]/6).
-template <auto kMember>
-struct PrivateMember {
-  friend rtps::BuiltinProtocols* builtin_protocols(rtps::WLP& liveliness) {
-    return liveliness.*kMember;
-  }
-};
-template struct PrivateMember<&rtps::WLP::mp_builtinProtocols>;
-
-}  // namespace
 
 void assert_liveliness(rtps::RTPSParticipant& participant) {
   // RTPS 9.6.3.1, as Fast DDS writes it: the participant, the kind, and no data.
@@ -50,10 +33,6 @@ void assert_liveliness(rtps::RTPSParticipant& participant) {
   change->serializedPayload.length = kSize;
   if (history.getHistorySize() > 0) history.remove_min_change();
   if (!history.add_change(change)) writer.release_change(change);
-}
-
-std::recursive_mutex& discovery_mutex(rtps::RTPSParticipant& participant) {
-  return *builtin_protocols(*participant.wlp())->mp_PDP->getMutex();
 }
 
 }  // namespace skein::dds::fastdds

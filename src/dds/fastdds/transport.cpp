@@ -98,17 +98,10 @@ class StartupTransport final : public eprosima::fastdds::rtps::ChainingTransport
 
 }  // namespace
 
-void DiscoveryInput::opened(std::recursive_mutex& lock_of_discovery) {
-  std::lock_guard lock(mutex_);
-  vendors_ = &lock_of_discovery;
-}
-
 void DiscoveryInput::receive(Receiver& receiver, unsigned char* message,
                              const RtpsGuard::Passed& passed, const rtps::Locator_t& local,
                              const rtps::Locator_t& remote) {
   std::lock_guard lock(mutex_);
-  std::unique_lock<std::recursive_mutex> vendors;
-  if (passed.asserts_liveliness && vendors_ != nullptr) vendors = std::unique_lock(*vendors_);
   if (passed.announces) {
     for_each_farewell(message, passed.size,
                       [&](const Guid& participant) { acknowledge_all(receiver, participant); });

@@ -27,10 +27,9 @@ class DiscoveryInput {
  public:
   using Receiver = eprosima::fastdds::rtps::TransportReceiverInterface;
 
-  /// Fast DDS's own lock is taken before it receives what somebody's writers live by
-  /// (liveliness.hpp). Before this call the participant has sent nothing, so that hardly anybody
-  /// sends it such a message, and it has no writer to forget.
-  void opened(std::recursive_mutex& lock_of_discovery);
+  /// To be held while an endpoint is removed: no message of discovery is received then
+  /// (liveliness.hpp).
+  std::mutex& removal() noexcept { return mutex_; }
 
   /// An announcement comes in here.
   void announced_at(Receiver* receiver) { receiver_.store(receiver, std::memory_order_relaxed); }
@@ -53,8 +52,7 @@ class DiscoveryInput {
 
   std::atomic<Receiver*> receiver_{nullptr};
   std::mutex mutex_;
-  std::recursive_mutex* vendors_ = nullptr;  // under mutex_
-  bool closed_ = false;                      // under mutex_
+  bool closed_ = false;  // under mutex_
 };
 
 /// A transport before Fast DDS's UDP that guards its parser, repairs what is received, notes who is

@@ -41,7 +41,6 @@ RtpsGuard::Passed RtpsGuard::pass(unsigned char* message, std::size_t size, std:
       passed.size = at;
       passed.announces |= is_announcement(*submessage);
       passed.acknowledges |= submessage->kind() == kAckNack;
-      passed.asserts_liveliness |= is_of_liveliness_writer(*submessage);
       continue;
     }
     if (verdict) refusals_.count(*verdict, submessage->kind(), source);

@@ -27,10 +27,9 @@ class RtpsGuard {
 
   /// What may be handed on of a message, and what that holds.
   struct Passed {
-    std::size_t size = 0;             ///< In bytes from its beginning; 0: nothing.
-    bool announces = false;           ///< A participant, or its end.
-    bool acknowledges = false;        ///< By an ACKNACK.
-    bool asserts_liveliness = false;  ///< Of a participant's writers, or may lead to such.
+    std::size_t size = 0;       ///< In bytes from its beginning; 0: nothing.
+    bool announces = false;     ///< A participant, or its end.
+    bool acknowledges = false;  ///< By an ACKNACK.
   };
 
   /// Looks at a message from that address (IPv4, in host order). What is refused within it becomes

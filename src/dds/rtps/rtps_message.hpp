@@ -182,24 +182,6 @@ inline bool is_announcement(const Submessage& submessage) {
          std::memcmp(submessage.body() + kWriter, kAnnouncer, sizeof kAnnouncer) == 0;
 }
 
-/// Whether a submessage that the guard has passed comes from a participant's liveliness writer.
-inline bool is_of_liveliness_writer(const Submessage& submessage) {
-  std::size_t writer = 0;
-  switch (submessage.kind()) {
-    case kHeartbeat:
-    case kGap:
-      writer = 4;
-      break;
-    case kData:
-    case kDataFrag:
-      writer = 8;
-      break;
-    default:
-      return false;
-  }
-  return std::memcmp(submessage.body() + writer, kLivelinessWriter, sizeof kLivelinessWriter) == 0;
-}
-
 /// What a DATA_FRAG submessage says beside that.
 struct Fragments {
   std::uint32_t first = 0;

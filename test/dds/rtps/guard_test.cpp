@@ -238,20 +238,6 @@ TEST_CASE_METHOD(
   CHECK_FALSE(pass(from(announcer, kData, kHasPayload, data(announcer, 2, endless))).announces);
 }
 
-TEST_CASE_METHOD(Stage, "the guard says whether it passed what a participant's writers live by") {
-  Guid liveliness = writer_of(0, 0xc2);
-  liveliness.bytes[13] = 0x02;  // 0x000200c2
-  const auto asserts = [&](const RtpsPacket& packet) {
-    Octets message = packet.octets();
-    return guard.pass(message.data(), message.size(), kSomewhere, now).asserts_liveliness;
-  };
-  const Octets alive = OctetWriter().u32(0x300).append(prefix_of(liveliness)).zeros(12).octets();
-  CHECK(asserts(from(liveliness, kData, kHasPayload, data(liveliness, 1, alive))));
-  CHECK(asserts(from(liveliness, kHeartbeat, 0, heartbeat(liveliness, 1, 1))));
-  CHECK_FALSE(asserts(from(kWriter, kData, kHasPayload, data(kWriter, 1, kPayload))));
-  CHECK_FALSE(asserts(from(kWriter, kHeartbeat, 0, heartbeat(kWriter, 1, 1))));
-}
-
 TEST_CASE_METHOD(Stage, "a message of liveliness holds what it says") {
   Guid participant = writer_of(0, 0xc2);
   participant.bytes[13] = 0x02;  // 0x000200c2
