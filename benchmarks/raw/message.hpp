@@ -3,8 +3,10 @@
 #include <fastcdr/Cdr.h>
 #include <fastcdr/FastBuffer.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstring>
 
 #include "harness/peer.hpp"
 
@@ -36,21 +38,21 @@ inline std::size_t encoded_size(const Outgoing& message) {
   return kEncapsulation + 16 + 4 + 4 + message.content->size();
 }
 
-/// Writes encoded_size() octets.
+/// Writes encoded_size() octets. The encapsulation, CDR of the least significant byte first, is not
+/// Fast CDR's, whose names for it changed with its version 2.
 inline void encode(const Outgoing& message, char* to) {
-  eprosima::fastcdr::FastBuffer buffer(to, encoded_size(message));
-  eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::LITTLE_ENDIANNESS,
-                             eprosima::fastcdr::Cdr::DDS_CDR);
-  cdr.serialize_encapsulation();
+  constexpr char kLittleEndianCdr[kEncapsulation] = {0, 1, 0, 0};
+  std::memcpy(to, kLittleEndianCdr, kEncapsulation);
+  eprosima::fastcdr::FastBuffer buffer(to + kEncapsulation, encoded_size(message) - kEncapsulation);
+  eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::LITTLE_ENDIANNESS);
   cdr << message.head.client << message.head.number << *message.content;
 }
 
 /// Throws Fast CDR's exceptions where the bytes hold no message.
 inline void decode(Message& message, char* from, std::size_t size) {
-  eprosima::fastcdr::FastBuffer buffer(from, size);
-  eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::DEFAULT_ENDIAN,
-                             eprosima::fastcdr::Cdr::DDS_CDR);
-  cdr.read_encapsulation();
+  const std::size_t skipped = std::min(size, kEncapsulation);
+  eprosima::fastcdr::FastBuffer buffer(from + skipped, size - skipped);
+  eprosima::fastcdr::Cdr cdr(buffer, eprosima::fastcdr::Cdr::LITTLE_ENDIANNESS);
   cdr >> message.head.client >> message.head.number >> message.content;
 }
 

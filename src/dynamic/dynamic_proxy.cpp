@@ -131,10 +131,10 @@ DynamicProxy connect_dynamic(Entity& entity, const ConnectOptions& options) {
   }
   const Instant deadline = entity.clock().after(options.timeout);
   const ToldInterface told = ask_for_interface(entity, options);
-  const DynamicInterface& interface = dynamic_interface(told.service, told.types);
+  const DynamicInterface* const interface = &dynamic_interface(told.service, told.types);
   ConnectOptions wanted = options;
   wanted.timeout = std::max(deadline - entity.clock().now(), Duration(1));  // fails as elsewhere
-  return {entity.connector().open(interface.info(), wanted), interface};
+  return {entity.connector().open(interface->info(), wanted), *interface};
 }
 
 }  // namespace skein

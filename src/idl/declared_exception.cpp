@@ -1,6 +1,6 @@
 #include "skein/detail/declared_exception.hpp"
 
-#include <atomic>
+#include <mutex>
 
 namespace skein::idl {
 
@@ -11,12 +11,10 @@ DeclaredException& DeclaredException::operator=(const DeclaredException& other) 
 }
 
 const char* DeclaredException::what() const noexcept try {
-  auto current = std::atomic_load(&text_);
-  if (!current) {
-    const auto made = std::make_shared<const std::string>(text());
-    if (std::atomic_compare_exchange_strong(&text_, &current, made)) return made->c_str();
-  }
-  return current->c_str();
+  static std::mutex mutex;  // of all objects: what() is seldom called
+  const std::lock_guard lock(mutex);
+  if (!text_) text_ = std::make_shared<const std::string>(text());
+  return text_->c_str();
 } catch (...) {
   return UserException::what();
 }

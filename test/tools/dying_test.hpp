@@ -13,7 +13,7 @@ namespace skein::test {
 /// own handler allocates, and so waits for ever where a process dies within malloc.
 class DyingTest : public Catch::TestEventListenerBase {
  public:
-  using TestEventListenerBase::TestEventListenerBase;
+  using Catch::TestEventListenerBase::TestEventListenerBase;
 
   void testRunStarting(const Catch::TestRunInfo&) override {
     struct sigaction action {};

@@ -7,7 +7,7 @@
 #include "test/tools/seed.hpp"
 
 using namespace skein::view;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 
 namespace {
 

@@ -10,7 +10,7 @@
 
 using namespace skein;
 using namespace skein::view;
-using Catch::Matchers::Contains, Catch::Matchers::EndsWith, Catch::Matchers::StartsWith;
+using Catch::Contains, Catch::EndsWith, Catch::StartsWith;
 using skein::test::eventually, skein::test::WebClient;
 
 namespace {

@@ -48,10 +48,10 @@ struct Launcher {
 
 struct VendorModule {
   std::string name;
-  std::string failure;  ///< Why it cannot be loaded; empty if it can.
-  std::string library;  ///< The vendor's own, as it was loaded.
-  std::string version;  ///< Of that library, as its file's name tells.
-  std::string tested;   ///< The version with which Skein is tested.
+  std::string failure;              ///< Why it cannot be loaded; empty if it can.
+  std::string library;              ///< The vendor's own, as it was loaded.
+  std::string version;              ///< Of that library, as its file's name tells.
+  std::vector<std::string> tested;  ///< The versions with which Skein is tested.
 };
 
 struct Limits {

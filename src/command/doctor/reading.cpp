@@ -89,13 +89,15 @@ std::optional<std::string> read_firewall() {
 }
 
 /// The file of the vendor's own library that this process has loaded; empty if there is none.
-std::string loaded_library(const std::string& beginning) {
+std::string loaded_library(const std::vector<std::string>& beginnings) {
   std::istringstream lines(read_file("/proc/self/maps"));
   for (std::string line; std::getline(lines, line);) {
     const std::size_t at = line.find('/');
     if (at == std::string::npos) continue;
     const fs::path path(line.substr(at));
-    if (path.filename().string().starts_with(beginning)) return path.string();
+    const std::string name = path.filename().string();
+    const auto begins = [&](const std::string& each) { return name.starts_with(each); };
+    if (std::ranges::any_of(beginnings, begins)) return path.string();
   }
   return {};
 }
@@ -105,10 +107,10 @@ VendorModule read_vendor(const dds::VendorLibrary& library) {
                       .failure = {},
                       .library = {},
                       .version = {},
-                      .tested = library.version};
+                      .tested = library.versions};
   try {
     dds::load_vendor(library.vendor);
-    module.library = loaded_library(library.file);
+    module.library = loaded_library(library.files);
     module.version = version_of(module.library);
   } catch (const Error& error) {
     module.failure = error.what();

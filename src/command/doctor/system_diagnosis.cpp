@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "dds/port/vendor_names.hpp"
 #include "diagnosis.hpp"
 
 namespace skein::command::doctor {
@@ -22,13 +23,14 @@ void vendor(const Purpose& purpose, const VendorModule& vendor, bool another_loa
                             : "do what the evidence says, if you want this vendor"});
     return;
   }
-  if (vendor.version == vendor.tested) {
+  if (std::ranges::count(vendor.tested, vendor.version) > 0) {
     symptoms.push_back({Severity::Fine, vendor.name, "loads, version " + vendor.version, "", ""});
     return;
   }
   symptoms.push_back({Severity::Warning, vendor.name,
-                      "Skein is tested with version " + vendor.tested + " of " + vendor.name +
-                          ", and this is " + (vendor.version.empty() ? "another" : vendor.version),
+                      "Skein is tested with version " + dds::alternatives(vendor.tested) + " of " +
+                          vendor.name + ", and this is " +
+                          (vendor.version.empty() ? "another" : vendor.version),
                       vendor.library, "install that version, or run Skein's tests with this one"});
 }
 

@@ -22,8 +22,14 @@ struct Module {
 // All that the library knows of its back ends, beside their modules.
 const std::vector<Module>& modules() {
   static const std::vector<Module> known{
-      {"fastdds", "libfastrtps2.9", true, {"fastdds", "libfastrtps.so.", "2.9.1"}},
-      {"cyclonedds", "libddsc0debian", false, {"cyclonedds", "libddsc.so.", "0.10.2"}}};
+      {"fastdds",
+       "libfastrtps2.9, or libfastdds3.1 on Debian 13",
+       true,
+       {"fastdds", {"libfastrtps.so.", "libfastdds.so."}, {"2.9.1", "3.1.2"}}},
+      {"cyclonedds",
+       "libddsc0debian, or libddsc0t64 on Debian 13",
+       false,
+       {"cyclonedds", {"libddsc.so."}, {"0.10.2", "0.10.5"}}}};
   return known;
 }
 

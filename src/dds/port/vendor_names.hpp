@@ -23,8 +23,8 @@ const std::vector<std::string>& shared_memory_vendors();
 /// A vendor's own library, which its module loads.
 struct VendorLibrary {
   std::string vendor;
-  std::string file;     ///< How its file's name begins; the version follows.
-  std::string version;  ///< With which Skein is tested.
+  std::vector<std::string> files;     ///< How its file's name may begin; the version follows.
+  std::vector<std::string> versions;  ///< With which Skein is tested.
 };
 
 const std::vector<VendorLibrary>& vendor_libraries();

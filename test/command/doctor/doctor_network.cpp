@@ -31,7 +31,7 @@ TEST_CASE("a sound machine has nothing wrong, and each thing that was looked at 
 
 TEST_CASE("whatever is wrong has a cause, and all but notes a remedy") {
   Facts facts;  // of a machine that has nothing
-  facts.vendors = {{"fastdds", "no such file", "", "", "2.9.1"}};
+  facts.vendors = {{"fastdds", "no such file", "", "", {"2.9.1"}}};
   facts.limits = {64, 0, 0};
   Purpose purpose = on_eth0();
   purpose.priority = 50;

@@ -15,8 +15,8 @@ inline command::doctor::Facts sound_machine() {
   Facts facts;
   facts.interfaces = {{"lo", {"127.0.0.1"}, true, false}, {"eth0", {"10.0.0.2"}, true, true}};
   facts.buffer = 4 * kMiB;
-  facts.vendors = {{"fastdds", "", "libfastrtps.so.2.9.1", "2.9.1", "2.9.1"},
-                   {"cyclonedds", "", "libddsc.so.0.10.2", "0.10.2", "0.10.2"}};
+  facts.vendors = {{"fastdds", "", "libfastrtps.so.2.9.1", "2.9.1", {"2.9.1"}},
+                   {"cyclonedds", "", "libddsc.so.0.10.2", "0.10.2", {"0.10.2", "0.10.5"}}};
   facts.synchronised_clock = true;
   facts.free_shared_memory = 1024 * kMiB;
   facts.firewall = "";
