@@ -1,10 +1,5 @@
 #include "attributes.hpp"
 
-#include <fastdds/rtps/transport/TransportInterface.h>
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
-#include <fastrtps/utils/IPLocator.h>
-
 #include <algorithm>
 #include <random>
 
@@ -18,22 +13,17 @@ namespace skein::dds::fastdds {
 namespace {
 
 using namespace std::chrono_literals;
-namespace policies = eprosima::fastdds::dds;
 
-/// Also what Fast DDS takes for filled between two heartbeats, and it counts a sample's fragments
-/// again and again: at 4 MiB the twelfth and the seventeenth of a mebibyte carry one, and the
-/// reader asks for what is on its way to him.
-constexpr std::uint32_t kSendBuffer = 64u << 20;
 constexpr auto kAnnouncementPeriod = 250ms;
 /// While a sample is not acknowledged. With 3 s, the default, a late joiner on Cyclone waits that
 /// long for the past.
-constexpr auto kHeartbeatPeriod = 100ms;
+constexpr auto kPastHeartbeat = 100ms;
 /// Of writers without a past, calls' among them: Cyclone's reader of a large sample asks for what
 /// it lacks of it when a heartbeat comes, not before.
-constexpr auto kVolatileHeartbeatPeriod = 25ms;
-constexpr auto kNackSuppression = 10ms;
+constexpr auto kVolatileHeartbeat = 25ms;
+constexpr auto kSuppression = 10ms;
 
-eprosima::fastrtps::Duration_t duration(std::chrono::milliseconds time) {
+Duration_t duration(std::chrono::milliseconds time) {
   return {static_cast<std::int32_t>(time.count() / 1000),
           static_cast<std::uint32_t>(time.count() % 1000 * 1'000'000)};
 }
@@ -54,16 +44,15 @@ std::chrono::milliseconds announcement_period(std::chrono::milliseconds lease) {
 
 template <class EndpointQos>
 void fill_common(EndpointQos& endpoint, const Qos& qos) {
-  endpoint.m_reliability.kind = qos.reliable ? eprosima::fastrtps::RELIABLE_RELIABILITY_QOS
-                                             : eprosima::fastrtps::BEST_EFFORT_RELIABILITY_QOS;
-  endpoint.m_durability.kind = qos.transient_local
-                                   ? eprosima::fastrtps::TRANSIENT_LOCAL_DURABILITY_QOS
-                                   : eprosima::fastrtps::VOLATILE_DURABILITY_QOS;
+  endpoint.m_reliability.kind =
+      qos.reliable ? policies::RELIABLE_RELIABILITY_QOS : policies::BEST_EFFORT_RELIABILITY_QOS;
+  endpoint.m_durability.kind = qos.transient_local ? policies::TRANSIENT_LOCAL_DURABILITY_QOS
+                                                   : policies::VOLATILE_DURABILITY_QOS;
   for (const std::string& name : qos.partitions) endpoint.m_partition.push_back(name.c_str());
   if (qos.liveliness_lease) {
     endpoint.m_liveliness.lease_duration = duration(*qos.liveliness_lease);
     // Never by Fast DDS itself (liveliness.hpp).
-    endpoint.m_liveliness.announcement_period = eprosima::fastrtps::c_TimeInfinite;
+    endpoint.m_liveliness.announcement_period = kInfinite;
   }
   if (qos.deadline) endpoint.m_deadline.period = duration(*qos.deadline);
   if (qos.exclusive) endpoint.m_ownership.kind = policies::EXCLUSIVE_OWNERSHIP_QOS;
@@ -71,19 +60,18 @@ void fill_common(EndpointQos& endpoint, const Qos& qos) {
   endpoint.m_userData.data_vec(to_user_data(qos.type));
 }
 
-template <class EndpointQos>
-Qos from_common(const EndpointQos& endpoint) {
-  const auto period = [](const eprosima::fastrtps::Duration_t& time) {
+Qos announced_qos(const AnnouncedEndpoint& endpoint) {
+  const auto period = [](const Duration_t& time) {
     const auto finite = from_duration(time);
     return finite ? std::optional(std::chrono::duration_cast<std::chrono::milliseconds>(*finite))
                   : std::nullopt;
   };
   Qos qos;
-  qos.reliable = endpoint.m_reliability.kind == eprosima::fastrtps::RELIABLE_RELIABILITY_QOS;
-  qos.transient_local = endpoint.m_durability.kind != eprosima::fastrtps::VOLATILE_DURABILITY_QOS;
-  qos.deadline = period(endpoint.m_deadline.period);
-  qos.liveliness_lease = period(endpoint.m_liveliness.lease_duration);
-  qos.exclusive = endpoint.m_ownership.kind == policies::EXCLUSIVE_OWNERSHIP_QOS;
+  qos.reliable = endpoint.reliability.kind == policies::RELIABLE_RELIABILITY_QOS;
+  qos.transient_local = endpoint.durability.kind != policies::VOLATILE_DURABILITY_QOS;
+  qos.deadline = period(endpoint.deadline.period);
+  qos.liveliness_lease = period(endpoint.liveliness.lease_duration);
+  qos.exclusive = endpoint.ownership.kind == policies::EXCLUSIVE_OWNERSHIP_QOS;
   const auto& listed = endpoint.representation.m_value;
   const bool xcdr2 = std::ranges::count(listed, policies::XCDR2_DATA_REPRESENTATION) > 0;
   const bool xcdr1 =
@@ -91,8 +79,8 @@ Qos from_common(const EndpointQos& endpoint) {
   qos.representation = xcdr1 && xcdr2 ? DataRepresentation::Any
                        : xcdr2        ? DataRepresentation::Xcdr2
                                       : DataRepresentation::Xcdr1;
-  qos.type = from_user_data(endpoint.m_userData.data_vec());
-  for (const auto& partition : endpoint.m_partition.getNames()) qos.partitions.push_back(partition);
+  qos.type = from_user_data(endpoint.user_data.data_vec());
+  for (const auto& partition : endpoint.partition.getNames()) qos.partitions.push_back(partition);
   return qos;
 }
 
@@ -117,12 +105,11 @@ std::uint32_t unused_port() {
 // repairs, or takes for liveliness. To a reader on this host that has such a locator, Fast DDS then
 // writes by nothing else.
 void add_shared_memory(rtps::RTPSParticipantAttributes& attributes) {
-  const auto memory = std::make_shared<eprosima::fastdds::rtps::SharedMemTransportDescriptor>();
+  const auto memory = std::make_shared<transports::SharedMemTransportDescriptor>();
   // Room for the fragments of some mebibytes; the default's half a mebibyte loses them.
   memory->segment_size(kSegment);
   // The locator holds this host's number, which Fast DDS keeps to itself.
-  const std::unique_ptr<eprosima::fastdds::rtps::TransportInterface> transport(
-      memory->create_transport());
+  const std::unique_ptr<transports::TransportInterface> transport(memory->create_transport());
   transport->getDefaultUnicastLocators(attributes.defaultUnicastLocatorList, unused_port());
   attributes.userTransports.push_back(memory);
 }
@@ -131,10 +118,10 @@ void add_shared_memory(rtps::RTPSParticipantAttributes& attributes) {
 
 std::shared_ptr<StartupTransportDescriptor> make_transport(const ParticipantOptions& options) {
   const Network& network = options.network;
-  auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
+  auto udp = std::make_shared<transports::UDPv4TransportDescriptor>();
   udp->interfaceWhiteList = interface_addresses(network);
   // The kernel gives what it may; with 208 KiB a mebibyte takes three times as long.
-  udp->sendBufferSize = kSendBuffer;
+  udp->sendBufferSize = StartupTransportDescriptor::kSendBuffer;
   udp->receiveBufferSize = kSocketBuffer;
   udp->maxInitialPeersRange = max_participants(options);
   return std::make_shared<StartupTransportDescriptor>(
@@ -146,6 +133,7 @@ rtps::RTPSParticipantAttributes participant_attributes(
     const std::shared_ptr<StartupTransportDescriptor>& transport) {
   rtps::RTPSParticipantAttributes attributes;
   attributes.setName(options.name.c_str());
+  leave_out_services(attributes);
   attributes.useBuiltinTransports = false;  // they listen everywhere, and bring shared memory
   attributes.userTransports.push_back(transport);
 
@@ -187,15 +175,15 @@ rtps::RTPSParticipantAttributes participant_attributes(
 rtps::WriterAttributes writer_attributes(const Topic& topic, const Qos& qos) {
   rtps::WriterAttributes attributes;
   fill_endpoint(attributes.endpoint, topic, qos);
-  attributes.times.heartbeatPeriod =
-      duration(qos.transient_local ? kHeartbeatPeriod : kVolatileHeartbeatPeriod);
+  attributes.times.*kHeartbeatPeriod =
+      duration(qos.transient_local ? kPastHeartbeat : kVolatileHeartbeat);
   // Cyclone ignores a volatile writer until its first heartbeat.
-  attributes.times.initialHeartbeatDelay = duration(0ms);
-  attributes.times.nackResponseDelay = duration(0ms);
+  attributes.times.*kInitialHeartbeatDelay = duration(0ms);
+  attributes.times.*kNackResponseDelay = duration(0ms);
   // A timer that each write starts. With 0, the default, it goes off at once: Fast DDS's timer
   // thread wakes two or three times a write, in the caller's way. For so long a lost sample is not
   // asked for again.
-  attributes.times.nackSupressionDuration = duration(kNackSuppression);
+  attributes.times.*kNackSuppression = duration(kSuppression);
   attributes.mode =
       rtps::SYNCHRONOUS_WRITER;  // large samples too are sent, in fragments, by write()
   if (qos.liveliness_lease) {
@@ -207,10 +195,10 @@ rtps::WriterAttributes writer_attributes(const Topic& topic, const Qos& qos) {
 rtps::ReaderAttributes reader_attributes(const Topic& topic, const Qos& qos) {
   rtps::ReaderAttributes attributes;
   fill_endpoint(attributes.endpoint, topic, qos);
-  attributes.times.initialAcknackDelay = duration(10ms);
+  attributes.times.*kInitialAckNackDelay = duration(10ms);
   // A Cyclone writer with a mebibyte unacknowledged stops until it is: 5 ms, the default, each
   // time.
-  attributes.times.heartbeatResponseDelay = duration(0ms);
+  attributes.times.*kHeartbeatResponseDelay = duration(0ms);
   return attributes;
 }
 
@@ -221,17 +209,8 @@ rtps::HistoryAttributes history_attributes(std::uint32_t max_samples) {
           static_cast<std::int32_t>(max_samples)};
 }
 
-eprosima::fastrtps::TopicAttributes topic_attributes(const Topic& topic) {
-  eprosima::fastrtps::TopicAttributes attributes(topic.name.c_str(), topic.type_name.c_str(),
-                                                 topic.keyed ? rtps::WITH_KEY : rtps::NO_KEY);
-  // Cyclone refuses endpoints whose type Fast DDS describes (PID 75).
-  attributes.auto_fill_type_object = false;
-  attributes.auto_fill_type_information = false;
-  return attributes;
-}
-
-eprosima::fastrtps::WriterQos writer_qos(const Qos& qos) {
-  eprosima::fastrtps::WriterQos result;
+WriterQos writer_qos(const Qos& qos) {
+  WriterQos result;
   fill_common(result, qos);
   if (qos.lifespan) result.m_lifespan.duration = duration(*qos.lifespan);
   result.m_ownershipStrength.value = static_cast<std::uint32_t>(qos.strength);
@@ -239,26 +218,19 @@ eprosima::fastrtps::WriterQos writer_qos(const Qos& qos) {
   return result;
 }
 
-eprosima::fastrtps::ReaderQos reader_qos(const Qos& qos) {
-  eprosima::fastrtps::ReaderQos result;
+ReaderQos reader_qos(const Qos& qos) {
+  ReaderQos result;
   fill_common(result, qos);
   set_representation(result, qos.representation);
   return result;
 }
 
-Endpoint to_endpoint(const rtps::WriterProxyData& writer) {
-  return {Side::Writer, writer.topicName().to_string(), writer.typeName().to_string(),
-          from_common(writer.m_qos)};
+Endpoint to_endpoint(Side side, const AnnouncedEndpoint& endpoint) {
+  return {side, endpoint.topic, endpoint.type, announced_qos(endpoint)};
 }
 
-Endpoint to_endpoint(const rtps::ReaderProxyData& reader) {
-  return {Side::Reader, reader.topicName().to_string(), reader.typeName().to_string(),
-          from_common(reader.m_qos)};
-}
-
-std::optional<std::chrono::nanoseconds> from_duration(
-    const eprosima::fastrtps::Duration_t& duration) {
-  if (duration == eprosima::fastrtps::c_TimeInfinite) return std::nullopt;
+std::optional<std::chrono::nanoseconds> from_duration(const Duration_t& duration) {
+  if (duration == kInfinite) return std::nullopt;
   return std::chrono::nanoseconds(duration.to_ns());
 }
 

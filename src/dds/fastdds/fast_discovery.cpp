@@ -1,21 +1,16 @@
 #include "fast_discovery.hpp"
 
-#include <fastdds/rtps/participant/ParticipantDiscoveryInfo.h>
-
 #include "attributes.hpp"
 #include "fast_identity.hpp"
 #include "put_off_leases.hpp"
 
 namespace skein::dds::fastdds {
 
-void FastDiscovery::onParticipantDiscovery(rtps::RTPSParticipant*,
-                                           rtps::ParticipantDiscoveryInfo&& info) {
-  using Info = rtps::ParticipantDiscoveryInfo;
-  const bool present =
-      info.status == Info::DISCOVERED_PARTICIPANT || info.status == Info::CHANGED_QOS_PARTICIPANT;
-  const Guid guid = to_guid(info.info.m_guid).participant();
-  if (info.status == Info::DISCOVERED_PARTICIPANT) {
-    for (const auto& locator : info.info.metatraffic_locators.unicast) {
+void FastDiscovery::on_participant(Change change, const Announced& participant) {
+  const bool present = change != Change::Gone;
+  const Guid guid = participant.guid.participant();
+  if (change == Change::Found) {
+    for (const auto& locator : participant.locators.unicast) {
       transport_.pace.discovered(locator.port, std::chrono::steady_clock::now());
     }
   }
@@ -23,10 +18,9 @@ void FastDiscovery::onParticipantDiscovery(rtps::RTPSParticipant*,
     transport_.guard.found(guid);
     {
       std::lock_guard lock(mutex_);
-      names_[guid] = info.info.m_participantName.to_string();
+      names_[guid] = participant.name;
     }
-    const auto& lease = info.info.m_leaseDuration;
-    silence_.follow(guid, announced_lease(lease.seconds, lease.nanosec),
+    silence_.follow(guid, announced_lease(participant.lease.seconds, participant.lease.nanosec),
                     std::chrono::steady_clock::now());
   } else {
     transport_.guard.removed(guid);
@@ -36,7 +30,7 @@ void FastDiscovery::onParticipantDiscovery(rtps::RTPSParticipant*,
     }
     silence_.forget(guid);
   }
-  if (info.status == Info::CHANGED_QOS_PARTICIPANT || !on_participant_) return;
+  if (change == Change::Changed || !on_participant_) return;
   {
     std::lock_guard lock(mutex_);
     if (present ? !present_.insert(guid).second : present_.erase(guid) == 0) return;
@@ -44,16 +38,14 @@ void FastDiscovery::onParticipantDiscovery(rtps::RTPSParticipant*,
   events_.post([this, guid, present] { on_participant_(guid, present); });
 }
 
-void FastDiscovery::onWriterDiscovery(rtps::RTPSParticipant*, rtps::WriterDiscoveryInfo&& info) {
-  const Guid guid = to_guid(info.info.guid());
-  if (info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER) return lost(guid);
-  found(guid, to_endpoint(info.info));
+void FastDiscovery::on_writer(const Guid& writer, const AnnouncedWriter* announced) {
+  if (announced == nullptr) return lost(writer);
+  found(writer, to_endpoint(Side::Writer, AnnouncedEndpoint(*announced)));
 }
 
-void FastDiscovery::onReaderDiscovery(rtps::RTPSParticipant*, rtps::ReaderDiscoveryInfo&& info) {
-  const Guid guid = to_guid(info.info.guid());
-  if (info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER) return lost(guid);
-  found(guid, to_endpoint(info.info));
+void FastDiscovery::on_reader(const Guid& reader, const AnnouncedReader* announced) {
+  if (announced == nullptr) return lost(reader);
+  found(reader, to_endpoint(Side::Reader, AnnouncedEndpoint(*announced)));
 }
 
 void FastDiscovery::found(const Guid& guid, Endpoint endpoint) {

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <fastdds/rtps/participant/RTPSParticipantListener.h>
-
 #include <functional>
 #include <map>
 #include <mutex>
@@ -16,7 +14,7 @@ namespace skein::dds::fastdds {
 
 /// Hears from Fast DDS of other participants and their endpoints, and passes this on: to the guard,
 /// to the watch over leases, to own endpoints, and to the user.
-class FastDiscovery final : public rtps::RTPSParticipantListener {
+class FastDiscovery final : public ParticipantListener {
  public:
   /// `events` may end before it, but after the last call of Fast DDS's.
   FastDiscovery(const ParticipantOptions& options, StartupTransportDescriptor::State& transport,
@@ -29,12 +27,9 @@ class FastDiscovery final : public rtps::RTPSParticipantListener {
   Endpoints& endpoints() noexcept { return endpoints_; }
 
  private:
-  void onParticipantDiscovery(rtps::RTPSParticipant* participant,
-                              rtps::ParticipantDiscoveryInfo&& info) override;
-  void onWriterDiscovery(rtps::RTPSParticipant* participant,
-                         rtps::WriterDiscoveryInfo&& info) override;
-  void onReaderDiscovery(rtps::RTPSParticipant* participant,
-                         rtps::ReaderDiscoveryInfo&& info) override;
+  void on_participant(Change change, const Announced& participant) override;
+  void on_writer(const Guid& writer, const AnnouncedWriter* found) override;
+  void on_reader(const Guid& reader, const AnnouncedReader* found) override;
   void found(const Guid& guid, Endpoint endpoint);
   void lost(const Guid& endpoint);
 

@@ -1,8 +1,5 @@
 #include "fast_participant.hpp"
 
-#include <fastdds/rtps/RTPSDomain.h>
-#include <fastdds/rtps/participant/RTPSParticipant.h>
-
 #include <algorithm>
 #include <atomic>
 
@@ -62,7 +59,7 @@ FastParticipant::FastParticipant(const ParticipantOptions& options)
 FastParticipant::FastParticipant(const ParticipantOptions& options, const SegmentsTurn&)
     : options_(feasible(options)),
       transport_(make_transport(options)),
-      readers_(guard()),
+      readers_(transport_->state->guard),
       assertions_([this] { assert_liveliness(*participant_); }),
       silence_(*transport_->state, events_),
       discovery_(options_, *transport_->state, silence_, events_),

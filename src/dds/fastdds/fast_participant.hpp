@@ -16,13 +16,7 @@
 #include "local_readers.hpp"
 #include "transport.hpp"
 
-namespace eprosima::fastrtps::rtps {
-class RTPSParticipant;
-}
-
 namespace skein::dds::fastdds {
-
-namespace rtps = eprosima::fastrtps::rtps;
 
 /// A participant on Fast DDS's RTPS layer. The DDS layer above it would add copies and locks for
 /// what this port does not have, and it is the one that reads files and environment: profiles,
@@ -46,13 +40,10 @@ class FastParticipant final : public Participant {
   /// descriptions of readers before it waits for the lock of discovery, whose holder may need one.
   std::mutex& writers() noexcept { return writers_; }
 
-  /// To be held while an endpoint is removed.
-  std::mutex& removal() noexcept { return transport_->state->discovery.removal(); }
-
   FastSilence& silence() noexcept { return silence_; }
   /// Tells others, often enough for `lease`, that this participant's writers live.
   void assert_liveliness_for(std::chrono::nanoseconds lease);
-  RtpsGuard& guard() noexcept { return transport_->state->guard; }
+  StartupTransportDescriptor::State& transport() noexcept { return *transport_->state; }
   Endpoints& endpoints() noexcept { return discovery_.endpoints(); }
   int acquire_topic(const Topic& topic);
   void release_topic(const std::string& name);

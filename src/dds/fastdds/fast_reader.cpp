@@ -1,8 +1,5 @@
 #include "fast_reader.hpp"
 
-#include <fastdds/rtps/RTPSDomain.h>
-#include <fastdds/rtps/participant/RTPSParticipant.h>
-
 #include "attributes.hpp"
 #include "dds/port/sample_format.hpp"
 #include "fast_identity.hpp"
@@ -36,8 +33,7 @@ FastReader::FastReader(FastParticipant& participant, const Topic& topic, const Q
                    Endpoint{Side::Reader, topic.name, topic.type_name, qos},
                    [events = events_](const Incompatibility& why) { events->incompatible(why); });
   }
-  participant_.rtps_participant()->registerReader(reader_, topic_attributes(topic),
-                                                  reader_qos(qos));
+  make_known(*participant_.rtps_participant(), *reader_, topic, reader_qos(qos));
   participant_.readers().add(*this);
 }
 
@@ -45,18 +41,17 @@ FastReader::FastReader(FastParticipant& participant, const Topic& topic, const Q
 /// is one, and call it, without a lock. When the reader has been removed none of them is left.
 FastReader::~FastReader() {
   {
-    std::scoped_lock lock(participant_.readers().creation(), participant_.removal());
+    std::scoped_lock lock(participant_.readers().creation(),
+                          participant_.transport().discovery.removal());
     participant_.readers().remove(*this);
     rtps::RTPSDomain::removeRTPSReader(reader_);
   }
   events_->close();
 }
 
-void FastReader::onReaderMatched(rtps::RTPSReader*,
-                                 const eprosima::fastdds::dds::SubscriptionMatchedStatus& status) {
-  const Guid writer = to_guid(status.last_publication_handle);
+void FastReader::on_matched(const Guid& writer, bool now) {
   if (peers_ && peers_->refuses(writer)) return;
-  events_->matched(writer, status.current_count_change > 0);
+  events_->matched(writer, now);
 }
 
 EndpointListener FastReader::endpoint_listener(dds::ReaderListener& listener) {
@@ -70,26 +65,21 @@ EndpointListener FastReader::endpoint_listener(dds::ReaderListener& listener) {
 }
 
 /// Called before the writer's first sample.
-void FastReader::on_writer_discovery(rtps::RTPSReader*,
-                                     rtps::WriterDiscoveryInfo::DISCOVERY_STATUS reason,
-                                     const rtps::GUID_t& writer,
-                                     const rtps::WriterProxyData* info) {
-  const bool found = reason != rtps::WriterDiscoveryInfo::REMOVED_WRITER;
-  participant_.guard().matched(to_guid(writer), rtps_message::entity_of(guid_), found);
-  if (!found) {
-    queue_.writer_unmatched(to_guid(writer));
+void FastReader::on_writer(const Guid& writer, const AnnouncedWriter* found) {
+  participant_.transport().guard.matched(writer, rtps_message::entity_of(guid_), found != nullptr);
+  if (found == nullptr) {
+    queue_.writer_unmatched(writer);
     return;
   }
-  const auto& qos = info->m_qos;
-  if (peers_) peers_->consider(to_guid(writer), to_endpoint(*info));
-  queue_.writer_matched(to_guid(writer), {static_cast<std::int32_t>(qos.m_ownershipStrength.value),
-                                          from_duration(qos.m_lifespan.duration)});
+  if (peers_) peers_->consider(writer, to_endpoint(Side::Writer, AnnouncedEndpoint(*found)));
+  queue_.writer_matched(
+      writer, {static_cast<std::int32_t>(strength_of(*found)), from_duration(lifespan_of(*found))});
 }
 
 /// Called with the RTPS reader's mutex held.
-void FastReader::onNewCacheChangeAdded(rtps::RTPSReader*, const rtps::CacheChange_t* const change) {
-  const bool stored = store(*change);
-  history_.remove_change(const_cast<rtps::CacheChange_t*>(change));
+void FastReader::on_received(const rtps::CacheChange_t& change) {
+  const bool stored = store(change);
+  history_.remove_change(const_cast<rtps::CacheChange_t*>(&change));
   if (stored && on_data_) on_data_(*this);
 }
 
@@ -115,7 +105,7 @@ void FastReader::drop_incomplete(const Guid& writer, std::int64_t number) {
   std::lock_guard lock(reader_->getMutex());
   rtps::CacheChange_t* change = nullptr;
   const rtps::SequenceNumber_t wanted(static_cast<std::uint64_t>(number));
-  if (!history_.get_change(wanted, to_rtps(writer), &change)) return;
+  if (!history_.get_change(wanted, from_guid<rtps::GUID_t>(writer), &change)) return;
   if (!change->is_fully_assembled()) history_.remove_change(change);
 }
 

@@ -1,9 +1,5 @@
 #pragma once
 
-#include <fastdds/rtps/history/ReaderHistory.h>
-#include <fastdds/rtps/reader/RTPSReader.h>
-#include <fastdds/rtps/reader/ReaderListener.h>
-
 #include "dds/port/receive_queue.hpp"
 #include "fast_participant.hpp"
 #include "received_payloads.hpp"
@@ -12,7 +8,7 @@ namespace skein::dds::fastdds {
 
 /// A reader on Fast DDS's RTPS layer. Samples leave Fast DDS's history as they come, so that take()
 /// needs none of its locks: they are held while on_data runs.
-class FastReader final : public Reader, private rtps::ReaderListener {
+class FastReader final : public Reader, private FastReaderListener {
  public:
   FastReader(FastParticipant& participant, const Topic& topic, const Qos& qos,
              dds::ReaderListener listener);
@@ -29,15 +25,9 @@ class FastReader final : public Reader, private rtps::ReaderListener {
   void drop_incomplete(const Guid& writer, std::int64_t number);
 
  private:
-  void onReaderMatched(rtps::RTPSReader*, rtps::MatchingInfo&) override {}
-  void onReaderMatched(rtps::RTPSReader* reader,
-                       const eprosima::fastdds::dds::SubscriptionMatchedStatus& status) override;
-  void onNewCacheChangeAdded(rtps::RTPSReader* reader,
-                             const rtps::CacheChange_t* const change) override;
-
-  void on_writer_discovery(rtps::RTPSReader* reader,
-                           rtps::WriterDiscoveryInfo::DISCOVERY_STATUS reason,
-                           const rtps::GUID_t& writer, const rtps::WriterProxyData* info) override;
+  void on_matched(const Guid& writer, bool now) override;
+  void on_received(const rtps::CacheChange_t& change) override;
+  void on_writer(const Guid& writer, const AnnouncedWriter* found) override;
 
   EndpointListener endpoint_listener(dds::ReaderListener& listener);
   bool store(const rtps::CacheChange_t& change);

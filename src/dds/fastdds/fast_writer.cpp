@@ -1,8 +1,5 @@
 #include "fast_writer.hpp"
 
-#include <fastdds/rtps/RTPSDomain.h>
-#include <fastdds/rtps/participant/RTPSParticipant.h>
-
 #include <algorithm>
 
 #include "attributes.hpp"
@@ -60,8 +57,7 @@ FastWriter::FastWriter(FastParticipant& participant, const Topic& topic, const Q
   }
   {
     std::lock_guard lock(participant_.writers());
-    participant_.rtps_participant()->registerWriter(writer_, topic_attributes(topic),
-                                                    writer_qos(qos));
+    make_known(*participant_.rtps_participant(), *writer_, topic, writer_qos(qos));
   }
   if (qos.liveliness_lease) participant_.assert_liveliness_for(*qos.liveliness_lease);
 }
@@ -73,7 +69,7 @@ FastWriter::~FastWriter() {
   // may then count holes among them without end.
   history_.remove_all_changes();
   {
-    std::lock_guard lock(participant_.removal());
+    std::lock_guard lock(participant_.transport().discovery.removal());
     rtps::RTPSDomain::removeRTPSWriter(writer_);
   }
   events_->close();
@@ -107,9 +103,9 @@ void FastWriter::dispose(const KeyHash& key) {
 
 rtps::CacheChange_t* FastWriter::make_change(std::size_t size, rtps::ChangeKind_t kind,
                                              const KeyHash& key) {
-  const auto room = static_cast<std::uint32_t>(size);
-  auto* change = topic_.keyed ? writer_->new_change([room] { return room; }, kind, to_handle(key))
-                              : writer_->new_change([room] { return room; }, kind);
+  auto* change = new_change(
+      *writer_, history_, static_cast<std::uint32_t>(size), kind,
+      topic_.keyed ? from_guid<rtps::InstanceHandle_t>(key) : rtps::c_InstanceHandle_Unknown);
   if (change != nullptr) {
     change->inline_qos.length = 0;  // changes are used again
     return change;
@@ -147,9 +143,8 @@ bool FastWriter::has_room() {
 /// unacknowledged.)
 void FastWriter::announce_position() {
   if (!qos_.reliable || new_reader_at_ < 0) return;
-  constexpr bool kFinal = false;
   constexpr bool kLiveliness = true;
-  static_cast<rtps::StatefulWriter*>(writer_)->send_periodic_heartbeat(kFinal, kLiveliness);
+  send_heartbeat(*writer_, kLiveliness);
 }
 
 /// A heartbeat behind each mebibyte, between samples: their memory is free for the next ones at
@@ -158,7 +153,7 @@ void FastWriter::ask_for_acknowledgment() {
   constexpr std::size_t kOften = 1 << 20;
   if (!qos_.reliable || unasked_bytes_ < kOften) return;
   unasked_bytes_ = 0;
-  static_cast<rtps::StatefulWriter*>(writer_)->send_periodic_heartbeat(false, false);
+  send_heartbeat(*writer_, false);
 }
 
 /// Before it is sent: it may be acknowledged, and gone, while it is being sent.
@@ -221,37 +216,31 @@ void FastWriter::drop_expired(const KeyHash& key) {
   lifespan_->ended(key);
 }
 
-void FastWriter::onWriterMatched(rtps::RTPSWriter*,
-                                 const eprosima::fastdds::dds::PublicationMatchedStatus& status) {
-  const bool matched = status.current_count_change > 0;
-  if (matched) new_reader_at_ = last_sent_.load();
-  const Guid reader = to_guid(status.last_subscription_handle);
+void FastWriter::on_matched(const Guid& reader, bool now) {
+  if (now) new_reader_at_ = last_sent_.load();
   if (peers_ && peers_->refuses(reader)) return;
-  events_->matched(reader, matched);
+  events_->matched(reader, now);
 }
 
 /// Called before the match.
-void FastWriter::on_reader_discovery(rtps::RTPSWriter*,
-                                     rtps::ReaderDiscoveryInfo::DISCOVERY_STATUS reason,
-                                     const rtps::GUID_t& reader,
-                                     const rtps::ReaderProxyData* info) {
-  if (reason == rtps::ReaderDiscoveryInfo::REMOVED_READER || !peers_) return;
-  peers_->consider(to_guid(reader), to_endpoint(*info));
+void FastWriter::on_reader(const Guid& reader, const AnnouncedReader* found) {
+  if (found == nullptr || !peers_) return;
+  peers_->consider(reader, to_endpoint(Side::Reader, AnnouncedEndpoint(*found)));
 }
 
 /// Called with the writer's mutex held, and perhaps with its locators locked. Then what waits to be
 /// sent again must not be dropped (forgetting.hpp), which the writer's mutex keeps as it is.
-void FastWriter::onWriterChangeReceivedByAll(rtps::RTPSWriter*, rtps::CacheChange_t* change) {
+void FastWriter::on_acknowledged_by_all(rtps::CacheChange_t& change) {
   if (!qos_.reliable) return;
-  if (static_cast<std::int64_t>(change->sequenceNumber.to64long()) > new_reader_at_) {
+  if (static_cast<std::int64_t>(change.sequenceNumber.to64long()) > new_reader_at_) {
     new_reader_at_ = -1;
   }
   // Late joiners need what is alive; that an instance has ended, they need not know.
-  if (qos_.transient_local && change->kind == rtps::ALIVE) return;
-  if (change->writer_info.is_linked) {
-    acknowledged_.push_back(change->sequenceNumber);
+  if (qos_.transient_local && change.kind == rtps::ALIVE) return;
+  if (change.writer_info.is_linked) {
+    acknowledged_.push_back(change.sequenceNumber);
   } else {
-    drop(change);
+    drop(&change);
   }
   room_.notify_all();
 }

@@ -1,9 +1,5 @@
 #pragma once
 
-#include <fastdds/rtps/history/WriterHistory.h>
-#include <fastdds/rtps/writer/StatefulWriter.h>
-#include <fastdds/rtps/writer/WriterListener.h>
-
 #include <atomic>
 #include <condition_variable>
 #include <unordered_map>
@@ -15,7 +11,7 @@ namespace skein::dds::fastdds {
 
 /// A writer on Fast DDS's RTPS layer, with the history that our QoS promises: its content is
 /// guarded by the RTPS writer's own mutex, under which Fast DDS also reports acknowledgments.
-class FastWriter final : public Writer, private rtps::WriterListener {
+class FastWriter final : public Writer, private FastWriterListener {
  public:
   FastWriter(FastParticipant& participant, const Topic& topic, const Qos& qos,
              dds::WriterListener listener);
@@ -28,16 +24,12 @@ class FastWriter final : public Writer, private rtps::WriterListener {
   std::vector<Guid> matched_readers() const override { return events_->peers(); }
 
  private:
-  using Lock = std::unique_lock<eprosima::fastrtps::RecursiveTimedMutex>;
+  using Lock = std::unique_lock<RecursiveTimedMutex>;
   using Changes = std::vector<rtps::CacheChange_t*>;
 
-  void onWriterMatched(rtps::RTPSWriter*, rtps::MatchingInfo&) override {}
-  void onWriterMatched(rtps::RTPSWriter* writer,
-                       const eprosima::fastdds::dds::PublicationMatchedStatus& status) override;
-  void on_reader_discovery(rtps::RTPSWriter* writer,
-                           rtps::ReaderDiscoveryInfo::DISCOVERY_STATUS reason,
-                           const rtps::GUID_t& reader, const rtps::ReaderProxyData* info) override;
-  void onWriterChangeReceivedByAll(rtps::RTPSWriter* writer, rtps::CacheChange_t* change) override;
+  void on_matched(const Guid& reader, bool now) override;
+  void on_reader(const Guid& reader, const AnnouncedReader* found) override;
+  void on_acknowledged_by_all(rtps::CacheChange_t& change) override;
 
   /// What is not acknowledged is all that the history holds, or its number is limited.
   bool bounded() const noexcept {
@@ -62,7 +54,7 @@ class FastWriter final : public Writer, private rtps::WriterListener {
   const Qos qos_;
   const std::shared_ptr<EndpointEvents> events_;
   std::optional<EndpointWatch> peers_;
-  rtps::WriterHistory history_;
+  SentSamples history_;
   /// Of each instance, oldest first, where a depth bounds them or late joiners get them.
   std::unordered_map<Guid, Changes> instances_;
   /// What is acknowledged by all and could not be dropped at once.

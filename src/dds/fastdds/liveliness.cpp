@@ -1,38 +1,29 @@
 #include "liveliness.hpp"
 
-#include <fastdds/rtps/builtin/liveliness/WLP.h>
-#include <fastdds/rtps/history/WriterHistory.h>
-#include <fastdds/rtps/participant/RTPSParticipant.h>
-#include <fastdds/rtps/writer/StatefulWriter.h>
-
 #include <cstring>
 
 namespace skein::dds::fastdds {
-
-namespace rtps = eprosima::fastrtps::rtps;
 
 void assert_liveliness(rtps::RTPSParticipant& participant) {
   // RTPS 9.6.3.1, as Fast DDS writes it: the participant, the kind, and no data.
   constexpr rtps::octet kEncapsulation[] = {0, 3, 0, 0};
   constexpr rtps::octet kAutomatic = 1;
   constexpr std::uint32_t kSize = sizeof kEncapsulation + 24;
-  rtps::WLP& liveliness = *participant.wlp();
-  rtps::StatefulWriter& writer = *liveliness.builtin_writer();
-  rtps::WriterHistory& history = *liveliness.builtin_writer_history();
+  const auto [writer, history] = liveliness_writer(participant);
   rtps::InstanceHandle_t key;
   const rtps::GuidPrefix_t& prefix = participant.getGuid().guidPrefix;
   std::memcpy(&key.value[0], prefix.value, rtps::GuidPrefix_t::size);
   key.value[15] = kAutomatic;
-  const std::lock_guard lock(writer.getMutex());
-  rtps::CacheChange_t* const change = writer.new_change([] { return kSize; }, rtps::ALIVE, key);
+  const std::lock_guard lock(writer->getMutex());
+  rtps::CacheChange_t* const change = new_change(*writer, *history, kSize, rtps::ALIVE, key);
   if (change == nullptr) return;
   rtps::octet* const payload = change->serializedPayload.data;
   std::memset(payload, 0, kSize);
   std::memcpy(payload, kEncapsulation, sizeof kEncapsulation);
   std::memcpy(payload + sizeof kEncapsulation, &key.value[0], 16);
   change->serializedPayload.length = kSize;
-  if (history.getHistorySize() > 0) history.remove_min_change();
-  if (!history.add_change(change)) writer.release_change(change);
+  if (history->getHistorySize() > 0) history->remove_min_change();
+  if (!history->add_change(change)) release_change(*writer, *history, *change);
 }
 
 }  // namespace skein::dds::fastdds

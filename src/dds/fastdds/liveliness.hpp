@@ -1,8 +1,6 @@
 #pragma once
 
-namespace eprosima::fastrtps::rtps {
-class RTPSParticipant;
-}
+#include "fast_dds.hpp"
 
 namespace skein::dds::fastdds {
 
@@ -14,6 +12,6 @@ namespace skein::dds::fastdds {
 
 /// Says, as Fast DDS's timer would, that all of a participant's writers live (RTPS 8.4.13). Not on
 /// a thread that Fast DDS calls.
-void assert_liveliness(eprosima::fastrtps::rtps::RTPSParticipant& participant);
+void assert_liveliness(rtps::RTPSParticipant& participant);
 
 }  // namespace skein::dds::fastdds

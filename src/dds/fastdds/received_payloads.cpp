@@ -14,10 +14,9 @@ constexpr std::size_t kListEntry = sizeof(std::uint32_t);
 }  // namespace
 
 // Samples in fragments, whose number the guard limits. Fast DDS says of whom they are only then.
-bool ReceivedPayloads::get_payload(std::uint32_t size, rtps::CacheChange_t& change) {
+void ReceivedPayloads::reserve(std::uint32_t size, rtps::CacheChange_t& change) {
   std::lock_guard lock(mutex_);
   lend(size, change, {});
-  return true;
 }
 
 void ReceivedPayloads::lend(std::uint32_t size, rtps::CacheChange_t& change,
@@ -33,13 +32,11 @@ void ReceivedPayloads::lend(std::uint32_t size, rtps::CacheChange_t& change,
   auto& payload = change.serializedPayload;
   payload.data = reinterpret_cast<rtps::octet*>(memory.data());
   payload.max_size = size;
-  change.payload_owner(this);
   lent_.push_back({std::move(memory), writer, change.sequenceNumber});
   held_ += lent_.back().cost();
 }
 
-bool ReceivedPayloads::get_payload(rtps::SerializedPayload_t& data, rtps::IPayloadPool*&,
-                                   rtps::CacheChange_t& change) {
+bool ReceivedPayloads::copy(const rtps::SerializedPayload_t& data, rtps::CacheChange_t& change) {
   {
     std::lock_guard lock(mutex_);
     if (!may_hold(data.length, change)) return false;
@@ -71,13 +68,10 @@ bool ReceivedPayloads::may_hold(std::uint32_t size, const rtps::CacheChange_t& c
   return first || of_participant + size <= kOfParticipant;
 }
 
-bool ReceivedPayloads::release_payload(rtps::CacheChange_t& change) {
-  give_back(withdraw(change.serializedPayload.data));
-  auto& payload = change.serializedPayload;
+void ReceivedPayloads::release(rtps::SerializedPayload_t& payload) {
+  give_back(withdraw(payload.data));
   payload.data = nullptr;
   payload.length = payload.max_size = payload.pos = 0;
-  change.payload_owner(nullptr);
-  return true;
 }
 
 Bytes ReceivedPayloads::take(const rtps::CacheChange_t& change) {

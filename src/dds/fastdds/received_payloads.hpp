@@ -1,30 +1,25 @@
 #pragma once
 
-#include <fastdds/rtps/common/CacheChange.h>
-#include <fastdds/rtps/history/IPayloadPool.h>
-
 #include <memory>
 #include <mutex>
 #include <utility>
 #include <vector>
 
+#include "fast_dds.hpp"
 #include "skein/detail/bytes.hpp"
 
 namespace skein::dds::fastdds {
-
-namespace rtps = eprosima::fastrtps::rtps;
 
 /// The memory into which a reader's samples are received. What has arrived is taken over as it lies
 /// there, without a copy, and the memory is kept for samples to come: Fast DDS's own pools give
 /// back large ones, and to receive into fresh pages takes longer than to receive. A writer's
 /// samples that wait behind one that is missing hold a bounded memory: then only what comes before
 /// them is received. Thread-safe.
-class ReceivedPayloads final : public rtps::IPayloadPool {
+class ReceivedPayloads final : public PayloadPool {
  public:
-  bool get_payload(std::uint32_t size, rtps::CacheChange_t& change) override;
-  bool get_payload(rtps::SerializedPayload_t& data, rtps::IPayloadPool*& owner,
-                   rtps::CacheChange_t& change) override;
-  bool release_payload(rtps::CacheChange_t& change) override;
+  void reserve(std::uint32_t size, rtps::CacheChange_t& change) override;
+  bool copy(const rtps::SerializedPayload_t& data, rtps::CacheChange_t& change) override;
+  void release(rtps::SerializedPayload_t& payload) override;
 
   /// Takes a change's payload over; the change may then only be removed.
   Bytes take(const rtps::CacheChange_t& change);

@@ -16,14 +16,12 @@ std::uint32_t address_of(const rtps::Locator_t& locator) {
 /// RTPS 9.6.1: discovery has the even ports, samples have the odd ones.
 bool is_discovery(const rtps::Locator_t& local) { return local.port % 2 == 0; }
 
-class StartupTransport final : public eprosima::fastdds::rtps::ChainingTransport {
+class StartupTransport final : public TransportBefore {
  public:
   explicit StartupTransport(const StartupTransportDescriptor& descriptor)
-      : ChainingTransport(descriptor), descriptor_(descriptor) {}
+      : TransportBefore(descriptor), descriptor_(descriptor) {}
 
-  eprosima::fastdds::rtps::TransportDescriptorInterface* get_configuration() override {
-    return &descriptor_;
-  }
+  transports::TransportDescriptorInterface* get_configuration() override { return &descriptor_; }
 
   // By RTPS's ports, whatever the participant counts its own by (participant_attributes).
   bool configureInitialPeerLocator(rtps::Locator_t& locator, const rtps::PortParameters&,
@@ -33,7 +31,7 @@ class StartupTransport final : public eprosima::fastdds::rtps::ChainingTransport
   }
 
   bool OpenInputChannel(const rtps::Locator_t& locator,
-                        eprosima::fastdds::rtps::TransportReceiverInterface* receiver,
+                        transports::TransportReceiverInterface* receiver,
                         std::uint32_t max_size) override {
     const bool opened = ChainingTransport::OpenInputChannel(locator, receiver, max_size);
     // It also says "opened" when asked a second time for a port that was taken.
@@ -41,34 +39,35 @@ class StartupTransport final : public eprosima::fastdds::rtps::ChainingTransport
     return opened;
   }
 
-  bool send(rtps::SenderResource* sender, const rtps::octet* message, std::uint32_t size,
-            rtps::LocatorsIterator* first, rtps::LocatorsIterator* last,
-            const std::chrono::steady_clock::time_point& limit) override {
+  bool send_message(Outgoing message, rtps::LocatorsIterator* first,
+                    rtps::LocatorsIterator* last) override {
     // "Sent" although dropped: a failure would only be logged.
     if (!descriptor_.state->open.load(std::memory_order_relaxed)) return true;
     const auto now = std::chrono::steady_clock::now();
     if (!descriptor_.state->suspend.may_send(now)) return true;
-    descriptor_.state->guard.sent(message, size);
+    Guid receiver;
     std::optional<std::int64_t> number;
-    for_each_submessage(const_cast<rtps::octet*>(message), size, [&](const Submessage& submessage) {
+    message.for_each_submessage([&](const Submessage& submessage) {
+      descriptor_.state->guard.sent(submessage, receiver);
       if (const auto announced = announcement_number(submessage)) number = announced;
-      descriptor_.state->discovery.sent.note(submessage);
-      announce_representation(submessage);
+      if constexpr (kForgettingMayHang) descriptor_.state->discovery.sent.note(submessage);
+      if constexpr (!kAnnouncesRepresentation) announce_representation(submessage);
     });
-    if (!number) return sender->send(message, size, first, last, limit);
+    if (!number) return message.send(first, last);
     std::vector<rtps::Locator_t> due;
     for (; *first != *last; ++*first) {
       const rtps::Locator_t& locator = **first;
-      const AnnouncementPace::Destination destination{sender, address_of(locator), locator.port};
+      const AnnouncementPace::Destination destination{message.sender(), address_of(locator),
+                                                      locator.port};
       if (descriptor_.state->pace.due(*number, destination, now)) due.push_back(locator);
     }
     rtps::Locators begin(due.begin());
     rtps::Locators end(due.end());
-    return due.empty() || sender->send(message, size, &begin, &end, limit);
+    return due.empty() || message.send(&begin, &end);
   }
 
-  void receive(eprosima::fastdds::rtps::TransportReceiverInterface* next,
-               const rtps::octet* message, std::uint32_t size, const rtps::Locator_t& local,
+  void receive(transports::TransportReceiverInterface* next, const rtps::octet* message,
+               std::uint32_t size, const rtps::Locator_t& local,
                const rtps::Locator_t& remote) override {
     const auto now = std::chrono::steady_clock::now();
     if (!descriptor_.state->suspend.may_receive(now)) return;
@@ -102,7 +101,7 @@ void DiscoveryInput::receive(Receiver& receiver, unsigned char* message,
                              const RtpsGuard::Passed& passed, const rtps::Locator_t& local,
                              const rtps::Locator_t& remote) {
   std::lock_guard lock(mutex_);
-  if (passed.announces) {
+  if (kForgettingMayHang && passed.announces) {
     for_each_farewell(message, passed.size,
                       [&](const Guid& participant) { acknowledge_all(receiver, participant); });
   }
@@ -119,7 +118,7 @@ void DiscoveryInput::say_farewell(const Guid& participant) {
   std::lock_guard lock(mutex_);
   Receiver* receiver = receiver_;
   if (closed_ || receiver == nullptr) return;
-  acknowledge_all(*receiver, participant);
+  if (kForgettingMayHang) acknowledge_all(*receiver, participant);
   receiver->OnDataReceived(message.data(), message.size(), {}, {});
 }
 
@@ -128,7 +127,7 @@ void DiscoveryInput::close() {
   closed_ = true;
 }
 
-eprosima::fastdds::rtps::TransportInterface* StartupTransportDescriptor::create_transport() const {
+transports::TransportInterface* StartupTransportDescriptor::create_transport() const {
   return new StartupTransport(*this);
 }
 

@@ -96,19 +96,15 @@ std::size_t RtpsGuard::participants() const {
   return admission_.participants();
 }
 
-void RtpsGuard::sent(const unsigned char* message, std::size_t size) {
-  Guid receiver;
-  // It only reads them.
-  for_each_submessage(const_cast<unsigned char*>(message), size, [&](const Submessage& submessage) {
-    const unsigned char* body = submessage.body();
-    if (submessage.kind() == kInfoDestination && submessage.size >= kPrefixSize) {
-      std::memcpy(receiver.bytes.data(), body, kPrefixSize);
-    }
-    if (submessage.kind() != kAckNack || submessage.size < 16) return;
-    const std::int64_t base = get_sequence_number(body + 8, submessage.little());
-    const std::lock_guard lock(mutex_);
-    admission_.acknowledged(receiver, get32(body + 4, false), get32(body, false), base - 1);
-  });
+void RtpsGuard::sent(const Submessage& submessage, Guid& receiver) {
+  const unsigned char* body = submessage.body();
+  if (submessage.kind() == kInfoDestination && submessage.size >= kPrefixSize) {
+    std::memcpy(receiver.bytes.data(), body, kPrefixSize);
+  }
+  if (submessage.kind() != kAckNack || submessage.size < 16) return;
+  const std::int64_t base = get_sequence_number(body + 8, submessage.little());
+  const std::lock_guard lock(mutex_);
+  admission_.acknowledged(receiver, get32(body + 4, false), get32(body, false), base - 1);
 }
 
 RtpsGuard::Verdict RtpsGuard::judge(const Submessage& submessage, const Admission::Origin& origin) {

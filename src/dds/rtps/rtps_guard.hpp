@@ -54,8 +54,9 @@ class RtpsGuard {
   std::vector<Admission::Incomplete> give_up(Clock::time_point now);
   void dropped(const Admission::Incomplete& sample);
 
-  /// Looks at a message that the vendor sends: what its readers acknowledge, they hold no longer.
-  void sent(const unsigned char* message, std::size_t size);
+  /// Looks at each submessage of a message that the vendor sends: what its readers acknowledge,
+  /// they hold no longer. `receiver`, at first of nobody, is whom the message goes to so far.
+  void sent(const rtps_message::Submessage& submessage, Guid& receiver);
 
   /// How many participants it knows.
   std::size_t participants() const;

@@ -104,11 +104,14 @@ struct Stage {
   /// A reader here says that it holds a writer's samples up to that one.
   void acknowledge(const Guid& writer, std::int64_t number) {
     const auto acknack = entities(kReader, writer).number(number + 1).u32(0).u32(7);
-    const Octets message = RtpsPacket(kReader)
-                               .submessage(0x0e, 0, OctetWriter().append(prefix_of(writer)))
-                               .submessage(0x06, 0, acknack)
-                               .octets();
-    guard.sent(message.data(), message.size());
+    Octets message = RtpsPacket(kReader)
+                         .submessage(0x0e, 0, OctetWriter().append(prefix_of(writer)))
+                         .submessage(0x06, 0, acknack)
+                         .octets();
+    Guid receiver;
+    dds::rtps_message::for_each_submessage(
+        message.data(), message.size(),
+        [&](const auto& submessage) { guard.sent(submessage, receiver); });
   }
 
   dds::RtpsGuard guard;
