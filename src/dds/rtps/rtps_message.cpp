@@ -117,10 +117,12 @@ bool is_locator(std::uint16_t id) { return (id >= 0x002f && id <= 0x0033) || id 
 /// Its value: kind, port, and 16 bytes of an address, whose last four are IPv4's.
 bool may_keep(const Parameter& locator, const std::function<bool(std::uint32_t)>& may_name) {
   constexpr std::uint32_t kUdp4 = 1;
-  constexpr std::uint32_t kSharedMemory = 16;
+  constexpr std::uint32_t kSharedMemory2 =
+      16;  // of Fast DDS 2, and of 3, which pass over the other
+  constexpr std::uint32_t kSharedMemory3 = 19;
   constexpr std::uint32_t kGroup = 239u << 24 | 255 << 16 | 1;  // 239.255.0.1, RTPS 9.6.1.4
   const std::uint32_t kind = get32(locator.value, locator.little);
-  if (kind == kSharedMemory) return true;
+  if (kind == kSharedMemory2 || kind == kSharedMemory3) return true;
   const std::uint32_t address = get32(locator.value + 20, false);
   return kind == kUdp4 && (address == kGroup || may_name(address));
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -126,6 +127,27 @@ void for_each_submessage(unsigned char* message, std::size_t size, Visit&& visit
     if (!submessage) return;
     visit(*submessage);
     at += kSubmessageHeaderSize + submessage->size;
+  }
+}
+
+/// The same of a message that Fast DDS 3 is about to send. It lies in several buffers, each a
+/// `buffer` and its `size`, and a sample in one of its own: `visit` gets what stands before that.
+template <class Buffers, class Visit>
+void for_each_submessage(const Buffers& buffers, Visit&& visit) {
+  std::size_t rest = kRtpsHeaderSize;  // of what was visited
+  for (const auto& buffer : buffers) {
+    auto* const bytes = static_cast<unsigned char*>(const_cast<void*>(buffer.buffer));
+    std::size_t at = std::min<std::size_t>(rest, buffer.size);
+    rest -= at;
+    while (at + kSubmessageHeaderSize <= buffer.size) {
+      Submessage submessage{bytes + at};
+      const std::size_t size = get16(submessage.header + 2, submessage.little());
+      at += kSubmessageHeaderSize;
+      submessage.size = std::min(size, buffer.size - at);
+      visit(submessage);
+      at += submessage.size;
+      rest = size - submessage.size;
+    }
   }
 }
 

@@ -238,6 +238,34 @@ TEST_CASE_METHOD(
   CHECK_FALSE(pass(from(announcer, kData, kHasPayload, data(announcer, 2, endless))).announces);
 }
 
+TEST_CASE("of a message in several buffers each submessage is seen, without a sample apart") {
+  struct Buffer {
+    const void* buffer;
+    std::size_t size;
+  };
+  constexpr std::size_t kSample = 40;
+  const Octets message = RtpsPacket(kWriter)
+                             .submessage(0x09, 0, OctetWriter().zeros(8))
+                             .submessage(kData, 0, OctetWriter().zeros(20 + kSample))
+                             .submessage(kHeartbeat, 0, OctetWriter().zeros(28))
+                             .octets();
+  const std::size_t before_sample = message.size() - (4 + 28) - kSample;
+  for (std::size_t sent_apart = 0; sent_apart <= kSample; ++sent_apart) {
+    CAPTURE(sent_apart);
+    const std::size_t first = message.size() - (4 + 28) - sent_apart;
+    const std::vector<Buffer> buffers{{message.data(), first},
+                                      {message.data() + first, sent_apart},
+                                      {message.data() + first + sent_apart, 4 + 28}};
+    std::vector<std::pair<int, std::size_t>> seen;
+    dds::rtps_message::for_each_submessage(buffers, [&](const auto& submessage) {
+      seen.emplace_back(submessage.kind(), submessage.size);
+    });
+    const std::vector<std::pair<int, std::size_t>> expected{
+        {0x09, 8}, {kData, 20 + first - before_sample}, {kHeartbeat, 28}};
+    CHECK(seen == expected);
+  }
+}
+
 TEST_CASE_METHOD(Stage, "a message of liveliness holds what it says") {
   Guid participant = writer_of(0, 0xc2);
   participant.bytes[13] = 0x02;  // 0x000200c2
