@@ -13,6 +13,8 @@ namespace skein::command {
 namespace {
 
 constexpr const char* kPlace = "view";
+/// For the answers of all entities.
+constexpr std::chrono::seconds kTopicsWithin{1};
 constexpr std::chrono::seconds kTypesWithin{2};
 constexpr std::size_t kLongestRefusal = 1024;
 /// Of a topic, in a reader's queue, while its samples are handed over.
@@ -29,7 +31,8 @@ TopicFeed::TopicFeed(view::Server& server, dds::Participant& participant, Inspec
 
 TopicFeed::~TopicFeed() { server_.close(); }
 
-void TopicFeed::update(const std::vector<Inspected>& entities) {
+std::vector<Inspected> TopicFeed::update() {
+  auto entities = inspector_.ask_all(inspection::Subject::Topics, kTopicsWithin);
   const auto now = witnesses(entities);
   std::erase_if(shown_, [&](const auto& each) {
     const auto found = now.find(each.first);
@@ -51,6 +54,7 @@ void TopicFeed::update(const std::vector<Inspected>& entities) {
   late_.clear();
   for (const auto* each : asked)
     if (!shown_.contains(each->first)) note_late(each->first);
+  return entities;
 }
 
 void TopicFeed::note_late(const Key& key) {

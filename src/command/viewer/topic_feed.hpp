@@ -16,8 +16,8 @@
 
 namespace skein::command {
 
-/// Shows topics as channels of a server. serve_view() (view.cpp) finds them: it asks all entities.
-/// Each is read while somebody watches its channel, and not before. Used by one thread.
+/// Finds the topics of a domain, and shows them as channels of a server. Each is read while
+/// somebody watches its channel, and not before. Used by one thread.
 class TopicFeed {
  public:
   /// All outlive it.
@@ -33,10 +33,10 @@ class TopicFeed {
     add({topic.dds_topic(), topic.qos()}, topic.name, skein::describe(idl::type_support<T>()));
   }
 
-  /// Topics that entities publish or read; those that none does any more are taken away. Asks for
-  /// the types of all that are new at once, and waits up to 2 s for those that are not told; these
-  /// it leaves out the next time.
-  void update(const std::vector<Inspected>& entities);
+  /// Asks all entities which topics they publish or read, shows these, and takes away those that
+  /// none does any more. Waits up to 1 s for the answers, which it returns, and up to 2 s for the
+  /// types of all that are new; a topic whose types are not told it leaves out the next time.
+  std::vector<Inspected> update();
 
  private:
   struct Source {

@@ -1,4 +1,3 @@
-#include <chrono>
 #include <cstdio>
 #include <string>
 
@@ -18,8 +17,6 @@ namespace skein::command {
 namespace {
 
 constexpr double kPeriodSeconds = 1;
-/// For the answers of all entities.
-constexpr std::chrono::seconds kTopicsWithin{1};
 
 view::Options server_options(const ViewArguments& arguments) {
   view::Options options;
@@ -38,8 +35,8 @@ void add_services(view::Graph& graph, const brokerless_discovery::Broker& broker
 
 }  // namespace
 
-// Each second, while a client looks, asks all entities for their topics, and shows these and the
-// services that the broker knows.
+// Each second, while a client looks, shows the topics that entities have and the services that the
+// broker knows.
 int serve_view(const ViewArguments& arguments) {
   const Interruption interruption;
   Entity entity = join(arguments, "view");
@@ -57,8 +54,7 @@ int serve_view(const ViewArguments& arguments) {
   std::fflush(stdout);
   do {
     if (server.clients() == 0) continue;  // nobody is asked while nobody looks
-    const auto entities = inspector.ask_all(inspection::Subject::Topics, kTopicsWithin);
-    topics.update(entities);
+    const auto entities = topics.update();
     if (arguments.calls) services.update();
     view::Graph graph;
     add_topics(graph, entities);
