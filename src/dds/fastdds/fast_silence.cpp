@@ -37,6 +37,7 @@ void FastSilence::check_each(std::chrono::nanoseconds lease) {
 
 /// Both by one reading of the clock: a stop of this process between two would be told as silence.
 void FastSilence::check(Time now) {
+  if (transport_.discovery.removal().is_wanted()) return;  // nobody is heard: a pause, no silence
   check_leases(now);
   check_liveliness(now);
 }

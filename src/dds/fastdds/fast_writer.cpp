@@ -69,7 +69,7 @@ FastWriter::~FastWriter() {
   // may then count holes among them without end.
   history_.remove_all_changes();
   {
-    std::lock_guard lock(participant_.transport().discovery.removal());
+    std::scoped_lock lock(participant_.transport().discovery.removal());
     rtps::RTPSDomain::removeRTPSWriter(writer_);
   }
   events_->close();

@@ -23,9 +23,32 @@ class DiscoveryInput {
  public:
   using Receiver = transports::TransportReceiverInterface;
 
-  /// To be held while an endpoint is removed: no message of discovery is received then
+  /// Lockable; to be held while an endpoint is removed: no message of discovery is received then
   /// (liveliness.hpp).
-  std::mutex& removal() noexcept { return mutex_; }
+  class Removal {
+   public:
+    explicit Removal(std::mutex& input) : input_(input) {}
+    void lock() {
+      ++wanted_;
+      input_.lock();
+    }
+    bool try_lock() {
+      if (!input_.try_lock()) return false;
+      ++wanted_;
+      return true;
+    }
+    void unlock() {
+      --wanted_;
+      input_.unlock();
+    }
+    /// Whether somebody has it, or waits for it: others are not heard meanwhile.
+    bool is_wanted() const noexcept { return wanted_ > 0; }
+
+   private:
+    std::mutex& input_;
+    std::atomic<int> wanted_{0};
+  };
+  Removal& removal() noexcept { return removal_; }
 
   /// An announcement comes in here.
   void announced_at(Receiver* receiver) { receiver_.store(receiver, std::memory_order_relaxed); }
@@ -48,6 +71,7 @@ class DiscoveryInput {
 
   std::atomic<Receiver*> receiver_{nullptr};
   std::mutex mutex_;
+  Removal removal_{mutex_};
   bool closed_ = false;  // under mutex_
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Fast DDS 2, as the sources of this back end name it. release_3/fast_dds.hpp has the same names
+// Fast DDS 2, as the sources of this back end name it. release_3/fast_dds_3.hpp has the same names
 // for release 3; CMake chooses.
 
 #include <fastdds/rtps/RTPSDomain.h>
