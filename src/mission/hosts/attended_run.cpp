@@ -62,8 +62,10 @@ class Attendant {
     while (words_.empty()) {
       const auto left = std::chrono::ceil<milliseconds>(end - steady_clock::now()).count();
       std::array<pollfd, 2> watched{{{input_, POLLIN, 0}, {interruption, POLLIN, 0}}};
-      if (left <= 0 || ::poll(watched.data(), watched.size(), static_cast<int>(left)) == 0)
-        return "";
+      if (left <= 0) return "";
+      const int ready = ::poll(watched.data(), watched.size(), static_cast<int>(left));
+      if (ready == 0) return "";
+      if (ready < 0) continue;  // a signal
       if (watched[1].revents != 0) return "";
       std::array<char, 4096> buffer;
       const auto size = ::read(input_, buffer.data(), buffer.size());
@@ -121,7 +123,8 @@ class Attendance {
 };
 
 void leave_signals_to_supervisor() {
-  const sigset_t signals = ending_signals();
+  sigset_t signals = ending_signals();
+  sigaddset(&signals, SIGCHLD);  // for the supervisor's thread alone, which unblocks it
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   ::signal(SIGPIPE, SIG_IGN);
 }
