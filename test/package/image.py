@@ -63,6 +63,10 @@ def test(source, packages, folder, podman):
     assert image["Config"]["Entrypoint"] == ["skein"], image["Config"]
     assert image["Size"] < MOST_MB * 1e6, f"{name} takes {image['Size'] / 1e6:.0f} MB"
 
+    for own in ("hostname", "resolv.conf"):
+        layer = subprocess.run(f"tar -xOf {one} --wildcards 'blobs/*' | tar -tz --ignore-zeros 2>/dev/null", shell=True, capture_output=True, text=True, check=False)
+        assert f"etc/{own}\n" not in layer.stdout, f"the image has this machine's /etc/{own}"
+
     code, text = podman(*podman.run(name, "launch", RECONNAISSANCE))
     assert code == 0, f"the mission ended with {code}:\n{text}"
     assert "Complete: the aircraft has landed and stands" in text, text
@@ -77,8 +81,8 @@ def test(source, packages, folder, podman):
 
 def main(source, packages):
     missing = [program for program in ("podman", "runc", "mmdebstrap") if not shutil.which(program)]
-    if missing or not list(pathlib.Path(packages).glob("skein-missions_*.deb")):
-        print(f"skipped: {packages} holds no packages" if not missing else f"skipped: there is no {missing[0]}")
+    if missing:
+        print(f"skipped: there is no {missing[0]}")
         return SKIPPED
     with tempfile.TemporaryDirectory() as folder:
         podman = Podman(pathlib.Path(folder))
