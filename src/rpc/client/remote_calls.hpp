@@ -26,10 +26,10 @@ namespace skein::rpc {
 class RemoteCalls : public std::enable_shared_from_this<RemoteCalls> {
  public:
   struct Parts {
+    std::shared_ptr<Clock> clock;  ///< First: `path` uses it until its end.
     std::shared_ptr<RequestPath> path;
     std::shared_ptr<RefusedReplies> refused;
     Executor& control;
-    std::shared_ptr<Clock> clock;
     std::string peer;                ///< For messages.
     std::chrono::microseconds spin;  ///< How long a thread that waits polls before it sleeps.
     std::size_t most;                ///< Calls that may wait for their answers.

@@ -36,7 +36,7 @@ RemoteChannel::State::State(calls::ClientPort& port_, Executor& control_,
       refused(std::make_shared<RefusedReplies>(address.service, options.peer)) {}
 
 void RemoteChannel::State::create_endpoints() {
-  calls = RemoteCalls::make({path, refused, control, owned_clock, options.peer, options.spin,
+  calls = RemoteCalls::make({owned_clock, path, refused, control, options.peer, options.spin,
                              options.calls_in_flight, [state = weak_from_this()] {
                                const auto self = state.lock();
                                if (!self || !self->retiring) return;

@@ -191,6 +191,7 @@ TEST_CASE_METHOD(Harbour, "a call outlives its entity and its proxy, and ends as
   const skein_proxy proxy = connect();
   skein_call call{};
   REQUIRE(skein_proxy_start(proxy, "after", skein_json("60000"), 0, nullptr, &call, error));
+  REQUIRE(eventually([&] { return buoy->asked_to_wait == 1; }));
   CHECK(skein_entity_free(caller.entity, error));
   CHECK_FALSE(skein_call_wait(call, nullptr, error));
   CHECK(error.kind() == SKEIN_DISCONNECTED);

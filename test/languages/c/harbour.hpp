@@ -33,12 +33,14 @@ class Buoy : public harbour::IBuoy {
     }
   }
   std::int32_t after(std::int32_t ms) override {
+    ++asked_to_wait;
     const auto& call = *CallContext::current();
     eventually([&] { return call.cancelled(); }, std::chrono::milliseconds(ms));  // it is slow
     return ms;
   }
 
   std::atomic<int> forgotten{0};
+  std::atomic<int> asked_to_wait{0};
 };
 
 class Reporter : public harbour::IReporter {
