@@ -400,6 +400,28 @@ TEST_CASE(
   CHECK(returned == 1);
 }
 
+TEST_CASE("what passes while an endpoint is removed is no silence of other participants") {
+  EventThread events([] {});
+  StartupTransportDescriptor::State transport(1s, 250ms, {});
+  FastSilence silence(transport, events);
+  FastSilence::Time now{1h};
+  silence.follow(participant(1), 100ms, now);
+  silence.check(now);
+  {
+    const std::scoped_lock removing(transport.discovery.removal());
+    for (int i = 0; i < 40; ++i) silence.check(now += 5ms);
+  }
+  silence.check(now += 5ms);  // the removal counts as 10 ms
+  for (int i = 0; i < 17; ++i) silence.check(now += 5ms);
+  SECTION("its lease is not over") {
+    CHECK(transport.lease_watch.drop_all() == std::vector{participant(1)});
+  }
+  SECTION("then it is") {
+    for (int i = 0; i < 2; ++i) silence.check(now += 5ms);
+    CHECK(transport.lease_watch.drop_all().empty());
+  }
+}
+
 TEST_CASE(
     "liveliness is asserted five times in two of the shortest lease, and never after the end") {
   int asserted = 0;
