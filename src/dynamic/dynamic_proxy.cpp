@@ -131,6 +131,7 @@ DynamicProxy connect_dynamic(Entity& entity, const ConnectOptions& options) {
   }
   const Instant deadline = entity.clock().after(options.timeout);
   const ToldInterface told = ask_for_interface(entity, options);
+  // A pointer: g++ 14 warns of a reference as of one to `told`.
   const DynamicInterface* const interface = &dynamic_interface(told.service, told.types);
   ConnectOptions wanted = options;
   wanted.timeout = std::max(deadline - entity.clock().now(), Duration(1));  // fails as elsewhere
