@@ -86,6 +86,15 @@ TEST_CASE("members that discovery does not carry are not compared") {
   CHECK_FALSE(match(another, carried(version_of(130))));
 }
 
+TEST_CASE("a member behind the end of the other side's list is not missing there") {
+  Qos many = version_of(130);
+  Qos few = version_of(130);
+  few.type.members.resize(2);
+  for (Qos* qos : {&few, &many}) qos->type.members.push_back({2, 0, 1, true, "A::T.m"});
+  CHECK(match(few, carried(many)));
+  CHECK(match(many, carried(few)));
+}
+
 TEST_CASE("user data of others, or broken one, tells no version") {
   auto data = to_user_data(version_of(3).type);
   CHECK(from_user_data(data).members.size() == 3);

@@ -40,23 +40,21 @@ constexpr const char* kSameVersion = "build both sides from the same version of 
 
 using Members = std::span<const GrowingMember>;
 
-/// What discovery carries of both: a longer list was cut off at its end.
-std::pair<Members, Members> comparable(const std::vector<GrowingMember>& offered,
-                                       const std::vector<GrowingMember>& requested) {
-  Members ours = offered;
-  Members theirs = requested;
-  const auto cut = [](Members& longer, const Members& shorter) {
-    if (longer.size() < kMostMembers || shorter.size() < kMostMembers) return;
-    const auto last = [](const Members& members) {
-      return std::tuple(members[kMostMembers - 1].type, members[kMostMembers - 1].member);
-    };
-    const auto limit = std::min(last(longer), last(shorter));
-    while (!longer.empty() && std::tuple(longer.back().type, longer.back().member) > limit) {
-      longer = longer.first(longer.size() - 1);
-    }
+/// Both lists up to the last member that discovery carries of each, so that both sides compare the
+/// same: it cuts off the end of a list that is longer than kMostMembers.
+std::pair<Members, Members> comparable(Members ours, Members theirs) {
+  const auto place = [](const GrowingMember& member) {
+    return std::tuple(member.type, member.member);
   };
-  cut(ours, requested);
-  cut(theirs, offered);
+  for (const Members& carried : {ours, theirs}) {
+    if (carried.size() < kMostMembers) continue;
+    const auto last = place(carried[kMostMembers - 1]);
+    for (Members* members : {&ours, &theirs}) {
+      while (!members->empty() && place(members->back()) > last) {
+        *members = members->first(members->size() - 1);
+      }
+    }
+  }
   return {ours, theirs};
 }
 
