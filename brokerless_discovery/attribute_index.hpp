@@ -21,6 +21,7 @@ struct Entry {
   bool suspect = false;
   std::size_t weight = 0;  ///< What it takes of its participant's room.
   bool leaving = false;
+  bool other_wire = false;
 };
 
 /// The Table's entries of one name: in the order of R8, and by the values of their attributes, so

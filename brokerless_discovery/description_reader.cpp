@@ -53,6 +53,7 @@ void DescriptionReader::on_sample(const dds::Sample& sample) {
           [&](Table& table) { return table.on_withdrawn(sample.key, sample.writer); }));
     }
     auto description = read(sample);
+    if (has_other_wire(description)) tell_other_wire(description);
     const std::string process = processes_.watch(description);
     const bool own = sample.writer.participant() == participant_.guid();
     try {
@@ -103,6 +104,13 @@ void DescriptionReader::tell_unheard(const dds::Incompatibility& why) {
   if (told_unheard_.exchange(true)) return;
   log(LogLevel::Warning, "broker",
       "the services of a peer stay unknown here: " + why.explanation +
+          "; further peers like it are not logged");
+}
+
+void DescriptionReader::tell_other_wire(const ServiceDescription& description) {
+  if (told_other_wire_.exchange(true)) return;
+  log(LogLevel::Warning, "broker",
+      description.entity + " (" + description.system + ") " + other_wire(description) +
           "; further peers like it are not logged");
 }
 

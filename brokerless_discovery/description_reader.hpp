@@ -47,6 +47,7 @@ class DescriptionReader {
   static ServiceDescription read(const dds::Sample& sample);
   void refuse(Refusal why, const Guid& writer, const std::string& text);
   void tell_unheard(const dds::Incompatibility& why);
+  void tell_other_wire(const ServiceDescription& description);
   void on_writer(const Guid& writer, bool matched);
   void renew_if_returned();
   void renew();
@@ -62,6 +63,7 @@ class DescriptionReader {
   Renewals renewals_;
   std::array<std::atomic<std::uint64_t>, kRefusals> refused_{};  // by Refusal
   std::atomic<bool> told_unheard_{false};  // of a writer that no reader here hears
+  std::atomic<bool> told_other_wire_{false};
   std::mutex mutex_;
   bool closed_ = false;
   std::unique_ptr<dds::Reader> reader_;

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "brokerless_discovery/versions.hpp"
+#include "core/printable.hpp"
 #include "core/suggestion.hpp"
 #include "core/system/interface_name.hpp"
 #include "skein/constraint.hpp"
@@ -40,6 +41,17 @@ bool wanted(const ServiceDescription& description, const Query& query) {
 constexpr std::string_view kLeaving = "skein:leaving";
 constexpr std::string_view kSharedMemoryCalls = "skein:shared_memory_calls";
 constexpr std::string_view kWithLoans = "loans";
+constexpr std::string_view kWireNumber = "skein:wire";
+constexpr std::size_t kLongestWire = 16;
+
+Entry make_entry(const std::shared_ptr<const ServiceDescription>& description, const Guid& writer,
+                 std::size_t weight) {
+  return {.description = description,
+          .writer = writer,
+          .weight = weight,
+          .leaving = is_leaving(*description),
+          .other_wire = has_other_wire(*description)};
+}
 
 bool is_own(const Entry& entry) { return entry.writer.is_nil(); }
 
@@ -82,6 +94,23 @@ void offer_shared_memory_calls(ServiceDescription& description, bool with_loans)
       {std::string(kSharedMemoryCalls), with_loans ? std::string(kWithLoans) : "true"});
 }
 
+bool has_other_wire(const ServiceDescription& description) noexcept {
+  const std::string* const number = find_attribute(description, kWireNumber);
+  return number && *number != kWire;
+}
+
+std::string other_wire(const ServiceDescription& description) {
+  return "runs a version of Skein whose wire is number " +
+         printable(*find_attribute(description, kWireNumber), kLongestWire) +
+         ", and here it is number " + std::string(kWire) +
+         ": the two cannot call each other; run versions of one wire on both sides (CHANGELOG.md "
+         "gives each version's)";
+}
+
+void give_wire(ServiceDescription& description) {
+  description.attributes.push_back({std::string(kWireNumber), std::string(kWire)});
+}
+
 Table::Changes Table::on_description(ServiceDescription description, const Guid& writer) {
   const Guid provider = provider_of(description);
   check_writer(provider, writer);
@@ -96,8 +125,7 @@ Table::Changes Table::on_description(ServiceDescription description, const Guid&
   auto shared = std::make_shared<const ServiceDescription>(std::move(description));
   if (found == entries_.end()) {
     take_room(writer, weight);
-    Entry& entry = entries_[provider] = {shared, writer, false, weight,
-                                         brokerless_discovery::is_leaving(*shared)};
+    Entry& entry = entries_[provider] = make_entry(shared, writer, weight);
     index(entry);
     return {{Change::Kind::Added, shared}};
   }
@@ -106,7 +134,7 @@ Table::Changes Table::on_description(ServiceDescription description, const Guid&
   const bool same = *entry.description == *shared;
   exchange_room(entry, writer, weight);
   unindex(entry);
-  entry = {shared, writer, false, weight, brokerless_discovery::is_leaving(*shared)};
+  entry = make_entry(shared, writer, weight);
   index(entry);
   if (same && change == Change::Kind::Updated) return {};
   return {{change, shared}};
@@ -217,7 +245,7 @@ bool Table::is_leaving(const Guid& provider) const {
 // Of an entry that has the name, in the system, that was asked for.
 bool Table::suits(const Entry& entry, const Query& query) {
   const ServiceDescription& description = *entry.description;
-  return !entry.suspect && !entry.leaving && visible(description, query) &&
+  return !entry.suspect && !entry.leaving && !entry.other_wire && visible(description, query) &&
          !(query.client && !understands(*query.client, description)) &&
          std::all_of(query.constraints.begin(), query.constraints.end(),
                      [&](const Constraint& constraint) { return meets(description, constraint); });
@@ -259,6 +287,7 @@ std::string Table::obstacle(const Entry& entry, const Query& query) {
     return "only " + who + " offers it; name that system to use it";
   if (entry.suspect) return who + " has not been heard of for its lease";
   if (entry.leaving) return who + " is about to leave";
+  if (entry.other_wire) return who + " " + other_wire(description);
   const std::string differing = query.client ? difference(*query.client, description) : "";
   if (!differing.empty()) {
     const std::string wanted = canonical_interface_name(query.client->name);

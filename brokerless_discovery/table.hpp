@@ -59,6 +59,15 @@ bool takes_loans(const ServiceDescription& description) noexcept;
 /// Makes the description offer them, and loans if `with_loans`.
 void offer_shared_memory_calls(ServiceDescription& description, bool with_loans);
 
+/// The number of all that two Skein peers say to each other. CONTRIBUTING.md says when it grows.
+inline constexpr std::string_view kWire = "1";
+/// Whether the provider gives another number (R30). One that gives none is not built with Skein.
+bool has_other_wire(const ServiceDescription& description) noexcept;
+/// For people: that a provider of another wire cannot be called, and what to do.
+std::string other_wire(const ServiceDescription& description);
+/// Makes the description give the number.
+void give_wire(ServiceDescription& description);
+
 /// Why a description is no longer in the table.
 enum class Departure { Left, Lost, Died };
 

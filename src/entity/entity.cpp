@@ -538,6 +538,7 @@ Guid Entity::add(std::shared_ptr<Servant> servant, const ServiceOptions& options
   ServiceDescription description = describe(interface, id, options);
   description.entity = name;
   description.owner = owner;
+  brokerless_discovery::give_wire(description);
   if (provided->same_host_server) {
     brokerless_discovery::offer_shared_memory_calls(description, reads_in_place(interface));
   }

@@ -11,6 +11,7 @@
 #include "skein/error.hpp"
 #include "skein/loopback.hpp"
 #include "test/tools/eventually.hpp"
+#include "test/tools/log.hpp"
 
 using namespace skein;
 using namespace skein::brokerless_discovery;
@@ -455,6 +456,21 @@ TEST_CASE("a description of more than it may be is refused, by its own peer at o
   rogue.write(large);
   CHECK(ground.broker.refused(Refusal::Oversized) == 1);
   CHECK(ground.broker.all().empty());
+}
+
+TEST_CASE("peers of another wire are logged once", "[R30]") {
+  World world;
+  Peer ground(world, "ground");
+  const Writer later(world);
+  const skein::test::Log log;
+  for (std::uint8_t number = 1; number <= 2; ++number) {
+    auto described = later.describe(number, "A/I");
+    described.attributes = {{"skein:wire", "7"}};
+    later.write(described);
+  }
+  CHECK(ground.broker.all().size() == 2);
+  CHECK_FALSE(ground.finds("A/I"));
+  CHECK(log.count("stranger (uav-1) runs a version of Skein whose wire is number 7") == 1);
 }
 
 TEST_CASE("a peer's own service has an identity that nobody else can have", "[R23]") {

@@ -282,6 +282,30 @@ TEST_CASE("a provider that is about to leave is kept but not offered, and look-u
   }
 }
 
+TEST_CASE("a provider of another wire is kept but not offered, and look-ups say why", "[R30]") {
+  Table table;
+  auto later = description(1, "A/I", "later");
+  later.attributes = {{"skein:wire", "7"}};
+  table.on_description(later, kWriter);
+  CHECK(table.all().size() == 1);
+  CHECK(table.find(query("A/I")).empty());
+  CHECK_THAT(table.explain(query("A/I")),
+             Catch::Contains("later (uav-1) runs a version of Skein whose wire is number 7") &&
+                 Catch::Contains("here it is number 1"));
+  SECTION("a provider beside it that gives the same number, or none, is offered") {
+    auto same = description(2, "A/I", "same");
+    same.attributes = {{"skein:wire", std::string(kWire)}};
+    table.on_description(same, kWriter);
+    table.on_description(description(3, "A/I", "silent"), kWriter);
+    CHECK(entities(table, query("A/I")) == Names{"same", "silent"});
+  }
+  SECTION("until it gives the same number") {
+    later.attributes = {{"skein:wire", std::string(kWire)}};
+    table.on_description(later, kWriter);
+    CHECK(entities(table, query("A/I")) == Names{"later"});
+  }
+}
+
 TEST_CASE("a suspect provider that is heard of again is offered again", "[R12]") {
   Table table;
   table.on_description(description(1, "A/I", "one"), kWriter);

@@ -387,6 +387,15 @@ TEST_CASE(
       InvalidArgument);
 }
 
+TEST_CASE("a provider of another wire is not called, and its callers learn why", "[R30]") {
+  const auto server = make_server();
+  server->provide<Echo>(std::make_shared<EchoService>(), {.attributes = {{"skein:wire", "7"}}});
+  CHECK_THROWS_WITH(
+      make_client()->connect<Echo>({.timeout = 50ms}),
+      Catch::Contains("server (uav-1) runs a version of Skein whose wire is number 7, "
+                      "and here it is number 1"));
+}
+
 TEST_CASE("an attribute's value may be a text, a number or a duration") {
   Pair pair({.attributes = {{"latency", 20ms}, {"quality", 0.9}, {"kind", "grid"}}});
   CHECK(pair.client
