@@ -68,9 +68,10 @@ std::shared_ptr<Link> join_provider(const Guid& provider, const Guid& client,
   await_answer(socket->get(), patience);
   JoinAnswer answer{};
   HandedOver handed[2];  // the memory, and the doorbell
-  if (!receive_packet(socket->get(), answer, handed) || !has_our_version(answer)) {
+  if (!receive_packet(socket->get(), answer, handed)) {
     refuse_to_join("the provider turned it away");
   }
+  if (!has_our_version(answer)) refuse_to_join("the two sides are of different versions");
   if (!handed[0]) {
     answer.refusal[sizeof answer.refusal - 1] = '\0';
     refuse_to_join(printable(answer.refusal));

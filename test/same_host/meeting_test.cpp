@@ -260,7 +260,7 @@ TEST_CASE("who waits for room is let go when the other side ends") {
   CHECK(sent == LinkWriter::Sent::Ended);
 }
 
-TEST_CASE("nobody, another user, and another version are refused with the reason") {
+TEST_CASE("nobody, and another user, are refused with the reason") {
   Meeting meeting;
   const auto refused = [&](Meeting& by, const Guid& provider, const std::string& why) {
     CHECK_THROWS_AS(by.join(provider, Guid::random(), [] {}), Unavailable);
@@ -276,6 +276,28 @@ TEST_CASE("nobody, another user, and another version are refused with the reason
   refused(meeting, closed.provider, "the provider turned it away");
   CHECK(closed.meeting.counters().guests == 0);
   CHECK(closed.meeting.counters().refused >= 2);
+}
+
+TEST_CASE("a provider of another version is called one") {
+  const Guid provider = Guid::random();
+  const FileDescriptor listening = local_socket(SOCK_SEQPACKET);
+  REQUIRE(listen_at(listening, address_of(provider)));
+  std::thread answering([&] {
+    const auto await = [](int socket) {
+      pollfd readable{socket, POLLIN, 0};
+      return poll(&readable, 1, 20000) == 1;
+    };
+    if (!await(listening.get())) return;
+    const FileDescriptor client = accept_at(listening.get());
+    char hello[64];
+    if (!await(client.get()) || recv(client.get(), hello, sizeof hello, 0) < 0) return;
+    const std::array<char, 128> answer{"skein9"};
+    send(client.get(), answer.data(), answer.size(), MSG_NOSIGNAL);
+  });
+  Meeting meeting;
+  CHECK_THROWS_WITH(meeting.join(provider, Guid::random(), [] {}),
+                    Catch::Contains("the two sides are of different versions"));
+  answering.join();
 }
 
 TEST_CASE("there is room for so many connections, and the next one is told so") {
