@@ -14,6 +14,10 @@ set_target_properties(${linked_libraries} skein_mission ${plugin_libraries} PROP
   VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR} INSTALL_RPATH "$ORIGIN")
 set_target_properties(${plugin_libraries} PROPERTIES INSTALL_RPATH "$ORIGIN:$ORIGIN/..")
 
+# Names as navigator.idl.hpp are too plain for the folder that everybody's headers share.
+set(skein_navigation_idl_subfolder /skein-navigation)
+target_include_directories(skein_navigation_idl INTERFACE
+  $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}${skein_navigation_idl_subfolder}>)
 install(TARGETS ${linked_libraries} EXPORT skeinTargets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(TARGETS skein_mission LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} NAMELINK_SKIP)
@@ -26,6 +30,7 @@ set(skein_navigation_idl_requires skein)
 foreach(library IN LISTS linked_libraries)
   string(REPLACE "_" "-" pc ${library})
   set(requires ${${library}_requires})
+  set(subfolder ${${library}_subfolder})
   configure_file(${CMAKE_CURRENT_LIST_DIR}/skein.pc.in ${CMAKE_CURRENT_BINARY_DIR}/${pc}.pc @ONLY)
   install(FILES ${CMAKE_CURRENT_BINARY_DIR}/${pc}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 endforeach()
@@ -33,7 +38,7 @@ endforeach()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/skein DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 foreach(target skein_idl skein_broker skein_rpc skein_entity skein_navigation_idl)
   get_target_property(generated ${target} SKEIN_IDL_DIRECTORY)
-  install(DIRECTORY ${generated}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.idl.hpp")
+  install(DIRECTORY ${generated}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}${${target}_subfolder} FILES_MATCHING PATTERN "*.idl.hpp")
 endforeach()
 
 install(FILES ${PROJECT_SOURCE_DIR}/src/dds/valgrind.supp DESTINATION ${CMAKE_INSTALL_DATADIR}/skein)
