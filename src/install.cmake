@@ -52,7 +52,7 @@ file(GLOB documents RELATIVE ${source} CONFIGURE_DEPENDS ${source}/examples/[0-9
   ${source}/test/guide/*.*)
 # Example 06 names files of the profiles beside it.
 file(GLOB_RECURSE profiles RELATIVE ${source} CONFIGURE_DEPENDS ${source}/mission_profiles/*.xml)
-list(APPEND documents ${profiles} README.md GUIDE.md TROUBLESHOOTING.md ARCHITECTURE.md CONTRIBUTING.md SECURITY.md SHIPPING.md LICENSE benchmarks/README.md brokerless_discovery/RULES.md idl/README.md
+list(APPEND documents ${profiles} README.md CHANGELOG.md GUIDE.md TROUBLESHOOTING.md ARCHITECTURE.md CONTRIBUTING.md SECURITY.md SHIPPING.md LICENSE benchmarks/README.md brokerless_discovery/RULES.md idl/README.md
   mission_profiles/README.md examples/reconnaissance/README.md examples/route_planning/README.md src/languages/README.md)
 list(TRANSFORM documents PREPEND ${source}/ OUTPUT_VARIABLE originals)
 set(documents_folder ${CMAKE_CURRENT_BINARY_DIR}/documents)

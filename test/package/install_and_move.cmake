@@ -39,7 +39,7 @@ foreach(file IN LISTS texts)
   endforeach()
 endforeach()
 foreach(file share/doc/skein/README.md share/doc/skein/GUIDE.md share/doc/skein/TROUBLESHOOTING.md
-    share/doc/skein/ARCHITECTURE.md share/doc/skein/LICENSE
+    share/doc/skein/ARCHITECTURE.md share/doc/skein/CHANGELOG.md share/doc/skein/LICENSE
     share/doc/skein/examples/01_first_service/provider.cpp share/doc/skein/test/guide/survey.idl share/man/man1/skein.1
     share/man/man1/skein-launch.1 share/bash-completion/completions/skein
     share/zsh/site-functions/_skein share/fish/vendor_completions.d/skein.fish)
