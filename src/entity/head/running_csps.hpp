@@ -18,16 +18,16 @@ namespace skein::entity {
 
 /// How a run of a CSP ended.
 struct RunEnding {
-  introspection::Outcome outcome;
-  Duration took;
-  Duration expected;  ///< As Selection::expected.
-  std::optional<double> quality;
-  bool fault;
-  bool settled;           ///< A refusal that is the answer.
-  bool own;               ///< As Verdict::own.
-  std::string reason;     ///< Of a fault, in words.
-  std::uint64_t request;  ///< Its number.
-  std::uint32_t after;    ///< As History::Sample::after.
+  introspection::Outcome outcome{};
+  Duration took{};
+  Duration expected{};  ///< As Selection::expected.
+  std::optional<double> quality{};
+  bool fault = false;
+  bool settled = false;       ///< A refusal that is the answer.
+  bool own = false;           ///< As Verdict::own.
+  std::string reason{};       ///< Of a fault, in words.
+  std::uint64_t request = 0;  ///< Its number.
+  std::uint32_t after = 0;    ///< As History::Sample::after.
 };
 
 /// The CSPs that work for a Head now, and the circuit breakers that keep work from CSPs that fail.

@@ -11,7 +11,7 @@ namespace {
 
 struct Learning {
   entity::HeadLearning learning{"uav-1/office", ""};
-  InterfaceInfo interface { .name = "crew::Worker" };
+  InterfaceInfo interface = {"crew::Worker", {}, {}, {}};
   std::shared_ptr<const Features> features = std::make_shared<const Features>();
   std::vector<Candidate> candidates = std::vector<Candidate>(1);
 

@@ -37,7 +37,7 @@ struct OverdueStage {
                               {[&](const Guid& provider) { return at_work.contains(provider); },
                                [&](const Guid& provider) { return on_callers.contains(provider); }},
                               warnings};
-  InterfaceInfo interface { .name = "crew::Worker" };
+  InterfaceInfo interface = {"crew::Worker", {}, {}, {}};
 
   void add(const Candidate& candidate, bool hangs) {
     at_work.insert(candidate.provider);

@@ -17,7 +17,7 @@ struct RunningStage {
   entity::HeadWarnings warnings{"uav-1/office"};
   entity::RunningCsps running{
       clock, {.faults = 1, .first_quarantine = 1s, .longest_quarantine = 1s}, warnings};
-  InterfaceInfo interface { .name = "crew::Worker" };
+  InterfaceInfo interface = {"crew::Worker", {}, {}, {}};
 
   /// As a Head lists it now.
   Candidate listed(const std::string& name) const {
@@ -94,7 +94,7 @@ TEST_CASE("a CSP that hangs is quarantined at its first fault") {
   ManualClock clock;
   entity::HeadWarnings warnings("uav-1/office");
   entity::RunningCsps running(clock, {.faults = 3}, warnings);
-  const InterfaceInfo interface { .name = "crew::Worker" };
+  const InterfaceInfo interface = {"crew::Worker", {}, {}, {}};
   Candidate candidate;
   candidate.name = "slow";
   const bool hangs = GENERATE(false, true);

@@ -15,6 +15,11 @@ from . import _skein, errors
 T = TypeVar("T")
 
 
+def _finish(future: asyncio.Future[None]) -> None:
+    if not future.done():
+        future.set_result(None)
+
+
 class Profile(enum.IntEnum):
     """What fits the data of a topic. Use the same on both sides.
 
@@ -104,7 +109,7 @@ class Subscription(Generic[T]):
         self._changed.notify_all()
         for loop, future in self._waiting:
             try:
-                loop.call_soon_threadsafe(lambda each=future: each.done() or each.set_result(None))
+                loop.call_soon_threadsafe(_finish, future)
             except RuntimeError:
                 pass  # the loop has ended
         self._waiting.clear()
