@@ -257,6 +257,57 @@ class Stages(unittest.TestCase):
             self.assertEqual(code, 1)
             self.assertNotIn("=== 3", text)
 
+    def test_what_was_not_tested_is_told_before_the_counts_and_stops_nothing(self):
+        said, why = "100% tests passed, 0 tests failed out of 5", "NOT TESTED: a release: no root"
+        with tempfile.TemporaryDirectory() as folder:
+            code, text = self.run_stages(folder, "echo", said, "--", "sh", "-c", f"echo '{why}'; exit 77", "--", "echo", "after")
+            self.assertEqual(code, 0)
+            self.assertIn("\nafter\n", text)
+            self.assertTrue(text.endswith(f"\n=== {why}\n{said}\n"), text)
+            self.assertIn("how long it takes is not known", self.run_stages(folder, "sh", "-c", f"echo '{why}'; exit 77")[1])
+
+    def test_one_that_tested_nothing_and_does_not_say_why_has_failed(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.assertEqual(self.run_stages(folder, "sh", "-c", "exit 77")[0], 77)
+            self.assertEqual(self.run_stages(folder, "sh", "-c", "echo 'NOT TESTED: a release: no root'; exit 1")[0], 1)
+
+
+@unittest.skipIf(os.getuid() != 0, "on_trixie makes itself root")
+class OtherRelease(unittest.TestCase):
+    """on_trixie, with stand-ins for the tools that make a Debian system and run in it."""
+
+    def run_on_trixie(self, debian_root, in_root):
+        with tempfile.TemporaryDirectory() as folder:
+            tools = pathlib.Path(folder) / "test" / "tools"
+            tools.mkdir(parents=True)
+            shutil.copy(TOOLS / "on_trixie", tools)
+            for name, script in (("debian_root", debian_root), ("in_root", in_root)):
+                (tools / name).write_text(f"#!/bin/sh\n{script}\n")
+                (tools / name).chmod(0o755)
+            log = pathlib.Path(folder) / "log"  # which what ran before has begun
+            with log.open("w", encoding="utf-8") as before:
+                before.write("before\n")
+                before.flush()
+                run = subprocess.run([tools / "on_trixie", "-R", "x"], stdout=subprocess.PIPE, stderr=before, text=True, check=False,
+                                     env=os.environ | {"SUDO_UID": "1", "SUDO_GID": "1"})
+            self.owner = tools.stat().st_uid
+            self.log = log.read_text(encoding="utf-8")
+        return run.returncode, run.stdout
+
+    def test_without_an_archive_it_says_what_debian_root_said_last(self):
+        code, text = self.run_on_trixie("echo first >&2; echo no archive >&2; exit 1", "true")
+        self.assertEqual((code, text), (77, "NOT TESTED: Debian 13: test/tools/debian_root failed: no archive\n"))
+        self.assertEqual(self.log, "before\nfirst\nno archive\n")
+
+    def test_without_mounts_it_says_so(self):
+        code, text = self.run_on_trixie("true", "echo unshare failed >&2; exit 1")
+        self.assertEqual((code, text), (77, "NOT TESTED: Debian 13: test/tools/in_root failed: unshare failed\n"))
+
+    def test_what_fails_there_fails(self):
+        code, text = self.run_on_trixie("true", 'shift; [ "$1" = true ] || { echo "$@"; exit 8; }')
+        self.assertEqual((code, text), (8, "./dev trixie -R x\n"))
+        self.assertEqual(self.owner, 1)
+
 
 class Selection(unittest.TestCase):
     """What a change in this very tree can break."""
