@@ -1,6 +1,8 @@
 #include "aircraft_type.hpp"
 
+#include <functional>
 #include <map>
+#include <string>
 
 #include "skein/error.hpp"
 
@@ -30,12 +32,13 @@ AircraftType tactical() {
 
 }  // namespace
 
-const AircraftType& aircraft_type(const std::string& name) {
-  static const std::map<std::string, AircraftType> kTypes{{"medium", {.fuel_kg_s = 0.006}},
-                                                          {"tactical", tactical()}};
+const AircraftType& aircraft_type(std::string_view name) {
+  static const std::map<std::string, AircraftType, std::less<>> kTypes{
+      {"medium", {.fuel_kg_s = 0.006}}, {"tactical", tactical()}};
   const auto found = kTypes.find(name);
   if (found != kTypes.end()) return found->second;
-  throw skein::InvalidArgument("'" + name + "' is no aircraft; there are medium and tactical");
+  throw skein::InvalidArgument("'" + std::string(name) +
+                               "' is no aircraft; there are medium and tactical");
 }
 
 }  // namespace reconnaissance

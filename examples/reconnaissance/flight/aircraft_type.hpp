@@ -1,6 +1,6 @@
 #pragma once
 
-#include <string>
+#include <string_view>
 
 #include "pilot.hpp"
 #include "point_mass.hpp"
@@ -17,6 +17,6 @@ struct AircraftType {
 /// `medium`: of the size of an RQ-1, the defaults of Airframe and FlightRules. `tactical`: of the
 /// Aerosonde's class, 13.5 kg; jsbsim/tactical_uav.xml describes it, and says where its figures
 /// come from. Throws skein::InvalidArgument for another name.
-const AircraftType& aircraft_type(const std::string& name);
+const AircraftType& aircraft_type(std::string_view name);
 
 }  // namespace reconnaissance
