@@ -5,8 +5,9 @@
 namespace skein::dds::fastdds {
 
 void assert_liveliness(rtps::RTPSParticipant& participant) {
-  // RTPS 9.6.3.1, as Fast DDS writes it: the participant, the kind, and no data.
-  constexpr rtps::octet kEncapsulation[] = {0, 3, 0, 0};
+  // RTPS 9.6.3.1: the participant, the kind, and no data, in plain CDR. Fast DDS 2 itself calls it
+  // a list of parameters, which Cyclone DDS 0.10.5 refuses.
+  constexpr rtps::octet kEncapsulation[] = {0, 1, 0, 0};
   constexpr rtps::octet kAutomatic = 1;
   constexpr std::uint32_t kSize = sizeof kEncapsulation + 24;
   const auto [writer, history] = liveliness_writer(participant);

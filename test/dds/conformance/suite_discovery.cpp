@@ -4,7 +4,9 @@
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
+#include <chrono>
 #include <cstring>
+#include <set>
 
 #include "dds/rtps/rtps_message.hpp"
 #include "test/tools/rtps_packet.hpp"
@@ -16,6 +18,7 @@ using namespace skein::dds;
 using namespace skein::dds::conformance;
 using namespace skein::test;
 using namespace skein::test::entity_id;
+using namespace std::chrono_literals;
 
 namespace {
 
@@ -94,6 +97,21 @@ bool is_directed(const Packet& packet) {
   return found;
 }
 
+/// The encapsulations in which the participant says that its writers live.
+std::set<int> encapsulations_of_liveliness(const Packet& packet, const Guid& participant) {
+  constexpr unsigned char kWriter[] = {0, 2, 0, 0xc2};  // that says so
+  std::set<int> found;
+  for_each_submessage_of(packet, [&](const rtps_message::Submessage& each) {
+    const auto* sender = packet.content.data() + rtps_message::kPrefix;
+    if (std::memcmp(sender, participant.bytes.data(), rtps_message::kPrefixSize) != 0) return;
+    if (each.kind() != rtps_message::kData) return;
+    const auto data = rtps_message::data(each);
+    if (!data || data->payload_size == 0) return;
+    if (std::memcmp(data->writer, kWriter, sizeof kWriter) == 0) found.insert(data->payload[1]);
+  });
+  return found;
+}
+
 bool forgot(const Inbox& inbox) {
   for (const auto& [writer, matched] : inbox.matches()) {
     if (!matched) return true;
@@ -102,6 +120,25 @@ bool forgot(const Inbox& inbox) {
 }
 
 }  // namespace
+
+// Cyclone DDS 0.10.5 refuses all others, and logs each.
+TEST_CASE("that writers live is said in plain CDR, as the specification wants it") {
+  const std::set<int> little_endian_cdr{1};
+  const WireTap tap;
+  Wire wire;
+  Qos qos = last_state();
+  qos.liveliness_lease = 300ms;
+  Outbox outbox(*wire.writing, keyed(), qos);
+  Inbox inbox(*wire.reading, keyed(), qos);
+  const auto said = [&](const Packet& each) {
+    return encapsulations_of_liveliness(each, wire.writing->guid());
+  };
+  REQUIRE(eventually(
+      [&] { return tap.count([&](const Packet& each) { return !said(each).empty(); }) > 0; }));
+  CHECK(tap.count([&](const Packet& each) {
+    return !said(each).empty() && said(each) != little_endian_cdr;
+  }) == 0);
+}
 
 TEST_CASE("who forgets a participant that has not forgotten it finds all its endpoints again") {
   const WireTap tap;
