@@ -12,5 +12,5 @@ EDITS = (
     Edit("src/mission/profile/topic_rules_reader.cpp", after='  set(&TopicQos::lifespan, read_period(topic, "lifespan"));\n',
          text='  set(&TopicQos::dummy, read_period(topic, "dummy"));\n'),
 )
-TARGETS = ("readme_tables", "profile_test", "profile_schema_test")
-TESTS = "^(profile_test|profile_schema_test|profile_readme_tables)$"
+TARGETS = ("profile_test", "profile_schema_test")
+TESTS = "^(profile_test|profile_schema_test)$"
