@@ -98,7 +98,8 @@ void Outlook::rank() {
     int beyond = 0, before = 0;
     for (std::size_t k = 0; k < first_late_; ++k) {
       before += runs_[k].answer <= took;
-      beyond += (runs_[k].answer > took) & (runs_[k].answer < kNever);
+      const int later = runs_[k].answer > took, ever = runs_[k].answer < kNever;
+      beyond += later & ever;
     }
     for (std::size_t k = first_late_; k < count_; ++k) beyond += runs_[k].took > took;
     runs_[i].before = static_cast<float>(before);
