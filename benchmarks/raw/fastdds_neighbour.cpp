@@ -1,5 +1,7 @@
 #include <cstring>
 
+#include SKEIN_RAW_FAST_DDS
+
 #include "raw/fastdds_participant.hpp"
 #include "raw/neighbour.hpp"
 
@@ -11,8 +13,7 @@ class AnnouncementListener final : public dds::DataReaderListener {
   void on_data_available(dds::DataReader* reader) override {
     Message message;
     dds::SampleInfo info;
-    while (reader->take_next_sample(&message, &info) ==
-           eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK) {
+    while (reader->take_next_sample(&message, &info) == kOk) {
       if (info.valid_data) census.add(message.head.client);
     }
   }

@@ -1,54 +1,15 @@
 #include "raw/fastdds_participant.hpp"
 
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
-#include <fastrtps/utils/IPLocator.h>
-
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
-#include <fastdds/dds/topic/TopicDataType.hpp>
 
-#include "raw/message.hpp"
+#include SKEIN_RAW_FAST_DDS  // fast_dds_2.hpp or fast_dds_3.hpp, of the release that CMake has found
 
 namespace skein::benchmarks::raw {
 namespace {
 
-namespace rtps = eprosima::fastrtps::rtps;
-using eprosima::fastrtps::Duration_t;
-
 /// What data sharing reserves for each sample, and how many samples it reserves.
 constexpr std::uint32_t kGreatestMessage = (1 << 20) + 64;
 constexpr std::int32_t kSharedSamples = 8;
-
-class MessageType final : public dds::TopicDataType {
- public:
-  explicit MessageType(Way way) : bounded_(way == Way::DataSharing) {
-    setName(kType);
-    m_typeSize = bounded_ ? kGreatestMessage : 512;
-    auto_fill_type_object(false);
-    auto_fill_type_information(false);
-  }
-  bool serialize(void* data, rtps::SerializedPayload_t* payload) override {
-    const auto& message = *static_cast<const Outgoing*>(data);
-    encode(message, reinterpret_cast<char*>(payload->data));
-    payload->length = static_cast<std::uint32_t>(encoded_size(message));
-    return true;
-  }
-  bool deserialize(rtps::SerializedPayload_t* payload, void* data) override {
-    decode(*static_cast<Message*>(data), reinterpret_cast<char*>(payload->data), payload->length);
-    return true;
-  }
-  std::function<std::uint32_t()> getSerializedSizeProvider(void* data) override {
-    return
-        [data] { return static_cast<std::uint32_t>(encoded_size(*static_cast<Outgoing*>(data))); };
-  }
-  void* createData() override { return new Message; }
-  void deleteData(void* data) override { delete static_cast<Message*>(data); }
-  bool getKey(void*, rtps::InstanceHandle_t*, bool) override { return false; }
-  bool is_bounded() const override { return bounded_; }
-
- private:
-  const bool bounded_;
-};
 
 rtps::Locator_t loopback() {
   rtps::Locator_t locator;
@@ -79,8 +40,8 @@ void fill(Endpoint& qos, Way way) {
 }
 
 /// Segments that hold the fragments of some mebibytes; the default's half a mebibyte loses them.
-std::shared_ptr<eprosima::fastdds::rtps::SharedMemTransportDescriptor> shared_memory() {
-  auto memory = std::make_shared<eprosima::fastdds::rtps::SharedMemTransportDescriptor>();
+std::shared_ptr<transports::SharedMemTransportDescriptor> shared_memory() {
+  auto memory = std::make_shared<transports::SharedMemTransportDescriptor>();
   memory->segment_size(16 << 20);
   return memory;
 }
@@ -102,7 +63,7 @@ void fill(Endpoint& qos, Delivery delivery) {
 
 FastddsParticipant::FastddsParticipant(std::uint32_t domain, Way way, std::uint32_t greatest_number)
     : way_(way) {
-  auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
+  auto udp = std::make_shared<transports::UDPv4TransportDescriptor>();
   udp->interfaceWhiteList = {"127.0.0.1"};
   udp->sendBufferSize = 64 << 20;
   udp->receiveBufferSize = 4 << 20;
@@ -119,7 +80,8 @@ FastddsParticipant::FastddsParticipant(std::uint32_t domain, Way way, std::uint3
   builtin.discovery_config.initial_announcements = {5, Duration_t(0, 10'000'000)};
   participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(domain, qos);
   if (participant_ == nullptr) throw Internal("no Fast DDS participant");
-  dds::TypeSupport(new MessageType(way)).register_type(participant_);
+  dds::TypeSupport(new MessageType(way == Way::DataSharing, kGreatestMessage))
+      .register_type(participant_);
   publisher_ = participant_->create_publisher(dds::PublisherQos());
   subscriber_ = participant_->create_subscriber(dds::SubscriberQos());
 }
@@ -133,17 +95,17 @@ dds::Topic* FastddsParticipant::topic_of(const char* name) {
 
 dds::DataWriter* FastddsParticipant::make(const char* topic, dds::DataWriterQos qos) {
   qos.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
-  qos.reliable_writer_qos().times.heartbeatPeriod = Duration_t(0, 100'000'000);
-  qos.reliable_writer_qos().times.nackResponseDelay = Duration_t(0, 0);
-  qos.reliable_writer_qos().times.nackSupressionDuration = Duration_t(0, 10'000'000);
+  qos.reliable_writer_qos().times.*kHeartbeatPeriod = Duration_t(0, 100'000'000);
+  qos.reliable_writer_qos().times.*kNackResponseDelay = Duration_t(0, 0);
+  qos.reliable_writer_qos().times.*kNackSuppression = Duration_t(0, 10'000'000);
   return publisher_->create_datawriter(topic_of(topic), qos);
 }
 
 dds::DataReader* FastddsParticipant::make(const char* topic, const dds::DataReaderQos& given,
                                           dds::DataReaderListener* listener) {
   dds::DataReaderQos qos = given;
-  qos.reliable_reader_qos().times.initialAcknackDelay = Duration_t(0, 10'000'000);
-  qos.reliable_reader_qos().times.heartbeatResponseDelay = Duration_t(0, 0);
+  qos.reliable_reader_qos().times.*kInitialAckNackDelay = Duration_t(0, 10'000'000);
+  qos.reliable_reader_qos().times.*kHeartbeatResponseDelay = Duration_t(0, 0);
   return subscriber_->create_datareader(
       topic_of(topic), qos, listener,
       listener ? dds::StatusMask::data_available() : dds::StatusMask::none());

@@ -8,23 +8,21 @@
 #include <mutex>
 #include <thread>
 
+#include SKEIN_RAW_FAST_DDS
+
 #include "raw/fastdds_participant.hpp"
 #include "raw/main.hpp"
-#include "raw/message.hpp"
 #include "raw/neighbour.hpp"
 
 namespace skein::benchmarks::raw {
 namespace {
-
-using eprosima::fastrtps::Duration_t;
 
 /// Answers all requests that wait; whether there were any.
 bool answer(dds::DataReader& requests, dds::DataWriter& replies) {
   bool answered = false;
   Message request;
   dds::SampleInfo info;
-  while (requests.take_next_sample(&request, &info) ==
-         eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK) {
+  while (requests.take_next_sample(&request, &info) == kOk) {
     if (!info.valid_data) continue;
     const Content result = echo(request.content);
     Outgoing reply{request.head, &result};
@@ -107,8 +105,7 @@ class Client final : private dds::DataReaderListener {
   std::optional<Content> take() {
     Message reply;
     dds::SampleInfo info;
-    while (replies_->take_next_sample(&reply, &info) ==
-           eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK) {
+    while (replies_->take_next_sample(&reply, &info) == kOk) {
       if (info.valid_data && reply.head.client == id_ && reply.head.number == number_) {
         return std::move(reply.content);
       }
