@@ -88,6 +88,8 @@ struct LoadBoard::State : std::enable_shared_from_this<State> {
 
   // ---- what this peer tells
 
+  // A load changes, and tick() measures it, under the lock of what is counted. So if tick()
+  // measures before the change, this sees that it is awake no more, though the load is relaxed.
   void wake() {
     if (awake.load(std::memory_order_relaxed) || awake.exchange(true)) return;
     timer = clock.call_after(kInterval, [state = weak_from_this()] {

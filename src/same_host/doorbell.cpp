@@ -69,7 +69,8 @@ void Doorbells::remove(const FileDescriptor& doorbell) noexcept {
   epoll_ctl(epoll_.get(), EPOLL_CTL_DEL, doorbell.get(), nullptr);
 }
 
-// In one order with wait(): either it sees the call, or this sees that it sleeps.
+// Sequentially consistent with wait(): either it sees the call, or this sees that it sleeps. For
+// that both flags are written before the other one is read.
 void Doorbells::call() noexcept {
   if (!called_.exchange(true) && sleeps_) ring(own_);
 }

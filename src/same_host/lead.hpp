@@ -11,6 +11,11 @@ namespace skein::same_host {
 /// The right to take messages, which one thread has at a time, the leader of the pattern "leader
 /// and followers"; nobody has it at first. Who leaves it may take it back as long as no other one
 /// has taken it meanwhile. Thread-safe.
+///
+/// Memory order. What the leader alone uses is handed on by `state_`: leave() releases it, take()
+/// acquires it. A thread that stands by writes `watched_`, then reads `state_`; one that leaves
+/// writes `state_`, then reads `watched_`. These are sequentially consistent, so that one of both
+/// sees the other's write.
 class Lead {
  public:
   /// False where somebody has it.

@@ -28,7 +28,10 @@ inline constexpr std::size_t kLoans = 8;
 inline constexpr std::uint64_t kLargestLoan = dds::kLargestSample;
 
 /// In the memory that both sides share, by place: how many messages that lend the provider has
-/// taken, ever, and how many of them it has not done with. It alone writes them.
+/// taken, ever, and how many of them it has not done with. It alone writes them. `reading` rises
+/// before `taken` does, and the client looks at `taken` first: a message that it sees taken it sees
+/// read. The provider's last read of a value comes before the release by which `reading` falls; the
+/// client's acquire of that comes before it changes the value.
 struct LoanCounts {
   std::array<Word, kLoans> taken{};
   std::array<Word, kLoans> reading{};

@@ -75,6 +75,7 @@ void ReceivedLink::deliver_until(const std::function<bool()>& done) noexcept {
   if (over_) take_back();
 }
 
+// Sequentially consistent with sleep(): either that sees the call, or this sees that it sleeps.
 void ReceivedLink::wake() {
   called_ = true;
   if (!sleeps_) return;

@@ -50,6 +50,10 @@ class Unfinished {
 };
 
 /// Wakes the thread that leads a receiver. Outlives the receiver, as links may.
+///
+/// Memory order. A flag is written before the leader is called, and the leader forgets the call
+/// before it looks at the flags (all sequentially consistent): if it misses a flag, it is called
+/// again.
 struct ReceiverNews {
   void tell_of_changes() {
     changed = true;

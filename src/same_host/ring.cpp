@@ -121,9 +121,9 @@ bool RingWriter::put(Part& part) {
   }
 }
 
-// In one order with what the reader does before it sleeps: either it sees this, or this sees it.
-// Who sleeps on this core would only get its turn in place of this thread: it is woken once, at the
-// end, or where there is no room.
+// Sequentially consistent with what the reader does before it sleeps: either it sees this, or this
+// sees it. Who sleeps on this core would only get its turn in place of this thread: it is woken
+// once, at the end, or where there is no room.
 void RingWriter::publish(More more) {
   RingState& state = *place_.state;
   state.written.store(written_);

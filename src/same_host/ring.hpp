@@ -20,6 +20,16 @@
 /// A message lies in the ring as one frame or several, each with a header of eight octets: how
 /// many octets of the message follow, and what the frame is. Frames begin at multiples of eight and
 /// do not go beyond the ring's end.
+///
+/// Memory order. Content and headers of frames are published by `written`: the writer's store
+/// releases them, the reader's load acquires them. The room goes back by `read` in the same way, so
+/// that the writer overwrites nothing that is still being copied out. A side that falls asleep
+/// writes its word (`reader_sleeps` …), then reads the other side's position; that one writes its
+/// position, then reads the word. All four accesses are sequentially consistent: in their one order
+/// the later of both reads sees the other side's write, and no wake-up is lost. With release and
+/// acquire alone, both could miss it. The reader's own `read_` and `written_` may be relaxed:
+/// threads that take in turn hand the ring to each other under a lock. So may the cores: a stale
+/// one only puts off a wake-up that follows in any case (Part::lets_sleep).
 namespace skein::same_host {
 
 /// What both sides of a ring change, apart from its content: how far they are, and whether they

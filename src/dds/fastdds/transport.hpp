@@ -51,7 +51,7 @@ class DiscoveryInput {
   Removal& removal() noexcept { return removal_; }
 
   /// An announcement comes in here.
-  void announced_at(Receiver* receiver) { receiver_.store(receiver, std::memory_order_relaxed); }
+  void announced_at(Receiver* receiver) { receiver_ = receiver; }
 
   /// Lets Fast DDS receive what the guard passed of a message of discovery.
   void receive(Receiver& receiver, unsigned char* message, const RtpsGuard::Passed& passed,

@@ -41,7 +41,8 @@ class CallerAnswers final : public Answers {
   void leave() override { --attended_; }
 
  private:
-  // The port's thread need not wake up for what comes, until all calls have ended.
+  // The port's thread need not wake up for what comes, until all calls have ended. Sequentially
+  // consistent with attend(): either this sees that a call is attended, or that one takes back.
   void expect() {
     if (attended_ != 0) return;
     delivery_->lend();
