@@ -1,0 +1,20 @@
+# Toolchain: compiles on any machine for arm64, against the libraries of a Debian system of that architecture, SKEIN_ARM64_ROOT, which
+# test/tools/debian_root makes. IDL is compiled by the Python of the machine that compiles.
+set(CMAKE_SYSTEM_NAME Linux)
+set(CMAKE_SYSTEM_PROCESSOR aarch64)
+set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)
+set(CMAKE_CXX_COMPILER aarch64-linux-gnu-g++)
+set(CMAKE_LIBRARY_ARCHITECTURE aarch64-linux-gnu)
+
+set(SKEIN_ARM64_ROOT "" CACHE PATH "Debian for arm64, with the packages that Skein is built with")
+list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES SKEIN_ARM64_ROOT)
+if(NOT EXISTS ${SKEIN_ARM64_ROOT}/usr/lib/aarch64-linux-gnu)
+  message(FATAL_ERROR "SKEIN_ARM64_ROOT is '${SKEIN_ARM64_ROOT}', which holds no Debian for arm64; `./dev test --arm64` makes one")
+endif()
+set(CMAKE_SYSROOT ${SKEIN_ARM64_ROOT})
+set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
+set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
+set(ENV{PKG_CONFIG_SYSROOT_DIR} ${SKEIN_ARM64_ROOT})
+set(ENV{PKG_CONFIG_LIBDIR} ${SKEIN_ARM64_ROOT}/usr/lib/aarch64-linux-gnu/pkgconfig:${SKEIN_ARM64_ROOT}/usr/share/pkgconfig)
